@@ -1,0 +1,2 @@
+//! The covimap command line.
+fn main() {}

@@ -1,0 +1,16 @@
+//! Multidimensional scaling in the plane: distances in, coordinates out.
+//!
+//! The crate knows no landmark, log or robot. Distances come either complete
+//! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
+//! is not listed is *unknown*, which is not the same as far away.
+
+mod error;
+mod pairs;
+mod similarity;
+
+pub use error::EmbedError;
+pub use pairs::{Pair, PairDistances};
+pub use similarity::Similarity;
+
+/// A position in the plane, `[x, y]`.
+pub type Point = [f64; 2];

@@ -1,0 +1,65 @@
+//! Known distances between some pairs of objects.
+
+use crate::EmbedError;
+
+/// One known distance, `i < j`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// First object, smaller than `j`.
+    pub i: u32,
+    /// Second object.
+    pub j: u32,
+    /// Distance asked of the pair, `>= 0`.
+    pub distance: f64,
+    /// Weight of the pair in the stress, `> 0`.
+    pub weight: f64,
+}
+
+/// A checked list of known distances: `i < j < n`, ascending, no pair twice, finite.
+///
+/// The problem that a list states is: find `x_1 .. x_n` in the plane that minimise
+/// `sum w_ij (|x_i - x_j| - d_ij)^2` over the listed pairs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairDistances {
+    n: usize,
+    pairs: Vec<Pair>,
+}
+
+impl PairDistances {
+    /// Checks `pairs` of `n` objects.
+    ///
+    /// # Errors
+    /// [`EmbedError::BadPair`] for the first pair that is out of range or order, or that is not finite.
+    pub fn new(n: usize, pairs: Vec<Pair>) -> Result<Self, EmbedError> {
+        let mut last = None;
+        for pair in &pairs {
+            let bad = |what| EmbedError::BadPair { i: pair.i, j: pair.j, n, what };
+            if pair.i >= pair.j || pair.j as usize >= n {
+                return Err(bad("objects must satisfy i < j < n"));
+            }
+            if last >= Some((pair.i, pair.j)) {
+                return Err(bad("pairs must ascend and none may be listed twice"));
+            }
+            if !(pair.distance >= 0.0 && pair.distance.is_finite()) {
+                return Err(bad("the distance must be finite and not negative"));
+            }
+            if !(pair.weight > 0.0 && pair.weight.is_finite()) {
+                return Err(bad("the weight must be finite and positive; leave the pair out instead"));
+            }
+            last = Some((pair.i, pair.j));
+        }
+        Ok(Self { n, pairs })
+    }
+
+    /// Number of objects.
+    #[must_use]
+    pub fn objects(&self) -> usize {
+        self.n
+    }
+
+    /// The pairs, ascending.
+    #[must_use]
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs
+    }
+}

@@ -1,0 +1,30 @@
+//! What can go wrong between a log and a map.
+
+use std::path::PathBuf;
+
+/// Why a log could not be read or a map not be built, read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// A line of an input file does not say what its format asks.
+    #[error("{file}:{line}: {what}")]
+    BadLine {
+        /// File as the user named it, `<stdin>` for standard input.
+        file: String,
+        /// Line, counted from 1.
+        line: u64,
+        /// What is wrong; what to do.
+        what: String,
+    },
+    /// A file could not be opened, read or written.
+    #[error("{}: {what}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried and what to do.
+        what: String,
+        /// The system's own words.
+        #[source]
+        source: std::io::Error,
+    },
+}

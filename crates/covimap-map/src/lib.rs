@@ -1,0 +1,17 @@
+//! A log of which landmarks were seen together in, a global map out.
+
+mod covisibility;
+mod error;
+mod global_map;
+mod landmarks;
+mod params;
+mod progress;
+mod report;
+
+pub use covisibility::CoVisibility;
+pub use error::MapError;
+pub use global_map::{GlobalMap, PlacedLandmark};
+pub use landmarks::{LandmarkId, LandmarkNames};
+pub use params::{ClassicalParams, MapperParams, Method, Phi};
+pub use progress::{Observer, Silent, Stage};
+pub use report::{BuildReport, ComponentReport, Warning};

@@ -1,0 +1,46 @@
+//! How a caller watches a build, and stops it.
+
+/// The stages of a build, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Reading the log; counted in bytes.
+    Read,
+    /// Counting sightings and co-sightings; counted in landmarks.
+    Count,
+    /// Cutting the graph into overlapping regions.
+    Regions,
+    /// Solving each region; counted in regions.
+    LocalMaps,
+    /// Bringing the local maps into one frame.
+    Stitch,
+    /// Sparse majorisation over all pairs; counted in steps.
+    Polish,
+    /// The paper's dense scaling.
+    Classical,
+}
+
+/// Is told how a build goes on. All methods may be called from several threads.
+pub trait Observer: Sync {
+    /// A stage starts; `total` is the amount of work in the stage's unit, where known.
+    fn started(&self, stage: Stage, total: Option<u64>) {
+        let _ = (stage, total);
+    }
+    /// `amount` more of the running stage's work is done.
+    fn advanced(&self, amount: u64) {
+        let _ = amount;
+    }
+    /// The running stage is done.
+    fn finished(&self, stage: Stage) {
+        let _ = stage;
+    }
+    /// Asked now and then: whether the build should stop with [`crate::MapError::Interrupted`].
+    fn interrupted(&self) -> bool {
+        false
+    }
+}
+
+/// Watches nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Observer for Silent {}

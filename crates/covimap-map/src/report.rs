@@ -1,0 +1,55 @@
+//! What a build says about the map it made. Part of the map file, so it holds nothing that
+//! changes from run to run (times go to the [`crate::Observer`]).
+
+use serde::{Deserialize, Serialize};
+
+/// A finding that a reader of the map should know of.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Warning {
+    /// Stable name of the kind, such as `seen_once`; explained in `docs/warnings.md`.
+    pub kind: String,
+    /// How many landmarks (or pairs, or regions) it is about.
+    pub count: u64,
+    /// String IDs of the first few of them.
+    pub examples: Vec<String>,
+    /// One sentence: what it means and what would help.
+    pub message: String,
+}
+
+/// One connected part of the co-visibility graph: a chart of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComponentReport {
+    /// Number of landmarks.
+    pub landmarks: u64,
+    /// Number of regions.
+    pub regions: u64,
+    /// Number of co-seen pairs.
+    pub pairs: u64,
+    /// Kruskal's stress-1 of the final positions over those pairs; 0 is perfect.
+    pub stress1: f64,
+    /// Majorisation steps of the polish.
+    pub iterations: u64,
+    /// Whether the polish met its tolerance.
+    pub converged: bool,
+}
+
+/// What was read, what was built, and how good it is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct BuildReport {
+    /// Steps of the log, empty ones included.
+    pub steps: u64,
+    /// Sightings of the log, duplicates within a step counted once.
+    pub sightings: u64,
+    /// Landmarks seen at least once.
+    pub landmarks: u64,
+    /// Pairs seen together at least once.
+    pub pairs: u64,
+    /// Regions over all components.
+    pub regions: u64,
+    /// Stress-1 over all components.
+    pub stress1: f64,
+    /// The components, largest first.
+    pub components: Vec<ComponentReport>,
+    /// What the reader should know.
+    pub warnings: Vec<Warning>,
+}
