@@ -18,4 +18,32 @@ pub enum EmbedError {
         /// What is wrong and what is asked.
         what: &'static str,
     },
+    /// A matrix that should be positive definite is not, or its factor failed the check.
+    #[error(
+        "a linear system of {order} unknowns is singular to working precision; the weights differ too much in size"
+    )]
+    Singular {
+        /// Number of unknowns.
+        order: usize,
+    },
+    /// Memory ran out.
+    #[error("out of memory while {what} of order {order}; use fewer pairs or a larger machine")]
+    OutOfMemory {
+        /// What was being done.
+        what: &'static str,
+        /// Order of the matrix.
+        order: usize,
+    },
+    /// A start configuration does not fit the problem.
+    #[error(
+        "start configuration: {what} - {found} points for {wanted} objects; give one finite point an object"
+    )]
+    BadStart {
+        /// What is wrong.
+        what: &'static str,
+        /// Points given.
+        found: usize,
+        /// Objects of the problem.
+        wanted: usize,
+    },
 }

@@ -5,12 +5,21 @@
 //! is not listed is *unknown*, which is not the same as far away.
 
 mod error;
+mod laplacian;
+mod newton;
 mod pairs;
 mod similarity;
+mod smacof;
+mod solve;
+mod stress;
 
 pub use error::EmbedError;
+pub use newton::newton;
 pub use pairs::{Pair, PairDistances};
 pub use similarity::Similarity;
+pub use smacof::smacof;
+pub use solve::{Embedding, StopRule, Termination};
+pub use stress::{raw_stress, stress1};
 
 /// A position in the plane, `[x, y]`.
 pub type Point = [f64; 2];

@@ -1,0 +1,280 @@
+//! The weighted Laplacian of a pair list, factored once.
+//!
+//! Majorisation solves `V X = Y` with the same `V = sum w_ij (e_i - e_j)(e_i - e_j)'` in every
+//! step. `V` is singular: in each connected component it maps constants to zero. One object a
+//! component is therefore tied to the origin by an extra diagonal entry. For a right-hand side
+//! whose columns sum to zero in every component, which is all that majorisation asks for, the
+//! tied solution solves the singular system exactly: summing the equations of a component leaves
+//! `c x_tied = 0`.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side, Spec};
+
+use crate::{EmbedError, Point};
+
+/// A symmetric positive definite sparse matrix with its Cholesky factor.
+///
+/// Factorisation and solves run on the calling thread: the parallel forms are slower at these
+/// sizes, and their results would depend on the thread count.
+pub(crate) struct Factored {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+}
+
+/// Lower triangle by columns: ascending rows, the diagonal first.
+pub(crate) struct LowerTriangle {
+    pub starts: Vec<usize>,
+    pub rows: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+impl LowerTriangle {
+    fn order(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// `y = A x` for the symmetric matrix whose lower triangle this is.
+    fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        for column in 0..self.order() {
+            for entry in self.starts[column]..self.starts[column + 1] {
+                let (row, value) = (self.rows[entry], self.values[entry]);
+                y[row] += value * x[column];
+                if row != column {
+                    y[column] += value * x[row];
+                }
+            }
+        }
+        y
+    }
+}
+
+impl Factored {
+    /// Largest relative residual of the probe solve that is taken for a sound factorisation.
+    const SOUND: f64 = 1e-6;
+
+    /// Factors `A = L L'` after an approximate minimum-degree ordering, and checks the factor on
+    /// a known solution.
+    pub fn new(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+        let n = matrix.order();
+        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
+        let symbolic = factorize_symbolic_cholesky(
+            structure,
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: n })?;
+        let factored = Self::numeric(symbolic, matrix)?;
+        factored.check(matrix)?;
+        Ok(factored)
+    }
+
+    /// Factors another matrix with the same places of entries, without ordering anew.
+    pub fn refactor(self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+        let factored = Self::numeric(self.symbolic, matrix)?;
+        factored.check(matrix)?;
+        Ok(factored)
+    }
+
+    fn numeric(symbolic: SymbolicCholesky<usize>, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+        let n = matrix.order();
+        let out_of_memory = EmbedError::OutOfMemory { what: "factoring a sparse matrix", order: n };
+        let mut values = Vec::new();
+        if values.try_reserve_exact(symbolic.len_val()).is_err() {
+            return Err(out_of_memory);
+        }
+        values.resize(symbolic.len_val(), 0.0);
+        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+        let Ok(mut memory) = MemBuffer::try_new(scratch) else { return Err(out_of_memory) };
+        symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(structure, &matrix.values),
+                Side::Lower,
+                LltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                Spec::default(),
+            )
+            .map_err(|_| EmbedError::Singular { order: n })?;
+        Ok(Self { symbolic, values })
+    }
+
+    fn check(&self, matrix: &LowerTriangle) -> Result<(), EmbedError> {
+        let n = matrix.order();
+        // A bounded, aperiodic probe: the fractional parts of multiples of the golden ratio.
+        let probe: Vec<f64> = (0..n).map(|k| (k as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
+        let wanted = matrix.times(&probe);
+        let mut solved = wanted.clone();
+        self.solve(&mut solved, 1);
+        let reached = matrix.times(&solved);
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0f64, |most, value| most.max(value.abs()));
+        let miss = largest(&mut reached.iter().zip(&wanted).map(|(a, b)| a - b));
+        let size = largest(&mut wanted.iter().copied());
+        // Written so that a NaN fails the check.
+        if miss <= Self::SOUND * size { Ok(()) } else { Err(EmbedError::Singular { order: n }) }
+    }
+
+    /// Replaces the `columns` columns of `rhs` (column-major) by the solutions.
+    pub fn solve(&self, rhs: &mut [f64], columns: usize) {
+        let n = self.symbolic.nrows();
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(rhs, n, columns),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+}
+
+/// `V` of a weighted pair list, factored, with the components that it falls into.
+pub(crate) struct Laplacian {
+    factored: Factored,
+    /// Component of each object.
+    component: Vec<u32>,
+    /// Number of objects in each component.
+    sizes: Vec<u32>,
+}
+
+impl Laplacian {
+    /// Factors the Laplacian of `n` objects and weighted edges `(i, j, w)`, `i < j`, ascending.
+    pub fn new(n: usize, edges: &[(u32, u32, f64)]) -> Result<Self, EmbedError> {
+        let (component, sizes) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
+        let factored = Factored::new(&tied_laplacian(n, edges, &component))?;
+        Ok(Self { factored, component, sizes })
+    }
+
+    /// Solves `V X = Y` for a `Y` that sums to zero in every component; the solution is centred
+    /// at the origin in every component.
+    pub fn solve(&self, y: &[Point]) -> Vec<Point> {
+        let n = y.len();
+        let mut columns: Vec<f64> = (0..2).flat_map(|axis| y.iter().map(move |point| point[axis])).collect();
+        self.factored.solve(&mut columns, 2);
+        let mut solution: Vec<Point> = (0..n).map(|i| [columns[i], columns[n + i]]).collect();
+        self.centre(&mut solution);
+        solution
+    }
+
+    fn centre(&self, points: &mut [Point]) {
+        let mut centres = vec![[0.0; 2]; self.sizes.len()];
+        for (point, &component) in points.iter().zip(&self.component) {
+            let centre = &mut centres[component as usize];
+            centre[0] += point[0];
+            centre[1] += point[1];
+        }
+        for (point, &component) in points.iter_mut().zip(&self.component) {
+            let size = f64::from(self.sizes[component as usize]);
+            point[0] -= centres[component as usize][0] / size;
+            point[1] -= centres[component as usize][1] / size;
+        }
+    }
+}
+
+/// Component of each object, numbered by its first object, and the size of each component.
+pub(crate) fn components(n: usize, edges: impl Iterator<Item = (u32, u32)>) -> (Vec<u32>, Vec<u32>) {
+    let mut parent: Vec<u32> = (0..n as u32).collect();
+    fn root(parent: &mut [u32], mut node: u32) -> u32 {
+        while parent[node as usize] != node {
+            parent[node as usize] = parent[parent[node as usize] as usize];
+            node = parent[node as usize];
+        }
+        node
+    }
+    for (i, j) in edges {
+        let (a, b) = (root(&mut parent, i), root(&mut parent, j));
+        parent[a.max(b) as usize] = a.min(b);
+    }
+    let mut component = vec![0; n];
+    let mut sizes = Vec::new();
+    for node in 0..n as u32 {
+        let top = root(&mut parent, node);
+        if top == node {
+            component[node as usize] = sizes.len() as u32;
+            sizes.push(0);
+        } else {
+            component[node as usize] = component[top as usize];
+        }
+        sizes[component[node as usize] as usize] += 1;
+    }
+    (component, sizes)
+}
+
+/// Lower triangle of `V` plus the tie of the last object of each component.
+fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u32]) -> LowerTriangle {
+    let mut diagonal = vec![0.0; n];
+    let mut starts = vec![0; n + 1];
+    for &(i, j, weight) in edges {
+        diagonal[i as usize] += weight;
+        diagonal[j as usize] += weight;
+        starts[i as usize + 1] += 1;
+    }
+    let mut last_of = vec![0; n];
+    for (node, &c) in component.iter().enumerate() {
+        last_of[c as usize] = node;
+        starts[node + 1] += starts[node] + 1;
+    }
+    let mut rows = vec![0; n + edges.len()];
+    let mut values = vec![0.0; n + edges.len()];
+    let mut at = 0;
+    for node in 0..n {
+        let place = starts[node];
+        rows[place] = node;
+        values[place] = diagonal[node];
+        if last_of[component[node] as usize] == node {
+            // A component of one object has no edge; any positive entry will do.
+            values[place] = if diagonal[node] > 0.0 { 2.0 * diagonal[node] } else { 1.0 };
+        }
+        for entry in place + 1..starts[node + 1] {
+            let (_, j, weight) = edges[at];
+            rows[entry] = j as usize;
+            values[entry] = -weight;
+            at += 1;
+        }
+    }
+    LowerTriangle { starts, rows, values }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_the_singular_system_in_every_component() {
+        // Two components {0, 1, 2} and {3, 4}, and 5 alone.
+        let edges = [(0, 1, 2.0), (0, 2, 1.0), (1, 2, 0.5), (3, 4, 3.0)];
+        let wanted = [[1.0, 0.0], [-2.0, 1.0], [1.0, -1.0], [0.5, 2.0], [-0.5, -2.0], [0.0, 0.0]];
+        let mut y = vec![[0.0; 2]; 6];
+        for &(i, j, w) in &edges {
+            for axis in 0..2 {
+                let pull = w * (wanted[i as usize][axis] - wanted[j as usize][axis]);
+                y[i as usize][axis] += pull;
+                y[j as usize][axis] -= pull;
+            }
+        }
+        let solved = Laplacian::new(6, &edges).unwrap().solve(&y);
+        for (got, want) in solved.iter().zip(&wanted) {
+            assert!((got[0] - want[0]).hypot(got[1] - want[1]) < 1e-12, "{got:?} for {want:?}");
+        }
+    }
+
+    #[test]
+    fn components_are_numbered_by_their_first_object() {
+        let (component, sizes) = components(6, [(4, 5), (0, 3), (3, 5)].into_iter());
+        assert_eq!(component, [0, 1, 2, 0, 0, 0]);
+        assert_eq!(sizes, [4, 1, 1]);
+    }
+
+    #[test]
+    fn no_object_at_all() {
+        assert!(Laplacian::new(0, &[]).unwrap().solve(&[]).is_empty());
+    }
+}

@@ -1,0 +1,65 @@
+//! What the iterative solvers share: when they stop, and what they hand back.
+
+use serde::{Deserialize, Serialize};
+
+use crate::stress::stress1;
+use crate::{EmbedError, PairDistances, Point};
+
+/// When an iterative solver stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StopRule {
+    /// Most steps, `>= 0`.
+    pub max_iterations: usize,
+    /// Converged when a step lowers the stress by less than this share of it, `>= 0`.
+    pub tolerance: f64,
+}
+
+/// Why a solver stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Termination {
+    /// The tolerance was met.
+    Converged,
+    /// The limit of steps was reached first.
+    IterationLimit,
+}
+
+/// A configuration and how it was reached.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Embedding {
+    /// One point an object; every connected component is centred at the origin.
+    pub points: Vec<Point>,
+    /// Raw stress of `points`.
+    pub stress: f64,
+    /// Stress-1 of `points`.
+    pub stress1: f64,
+    /// Steps taken.
+    pub iterations: usize,
+    /// Why the solver stopped.
+    pub termination: Termination,
+}
+
+impl Embedding {
+    pub(crate) fn new(
+        pairs: &PairDistances,
+        points: Vec<Point>,
+        stress: f64,
+        iterations: usize,
+        termination: Termination,
+    ) -> Self {
+        let stress1 = stress1(pairs, &points);
+        Self { points, stress, stress1, iterations, termination }
+    }
+}
+
+/// Refuses a start that is not one finite point an object.
+pub(crate) fn check_start(pairs: &PairDistances, start: &[Point]) -> Result<(), EmbedError> {
+    let bad = |what| EmbedError::BadStart { what, found: start.len(), wanted: pairs.objects() };
+    if start.len() != pairs.objects() {
+        return Err(bad("wrong number of points"));
+    }
+    if start.iter().flatten().any(|coordinate| !coordinate.is_finite()) {
+        return Err(bad("a coordinate is not finite"));
+    }
+    Ok(())
+}
