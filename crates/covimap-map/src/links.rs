@@ -1,0 +1,169 @@
+//! From counts to distances: the weighted graph that regions, local maps and polish work on.
+//!
+//! Two landmarks that were seen together are *linked*; two that never were are simply unknown to
+//! each other, which is not a distance. A link has
+//!
+//! - a distance `d_ij = sqrt(-alpha ln f_ij)`, the paper's eq. (10) without its clamps, of the
+//!   shrunken frequency `f_ij = (n_ij + 1/2) / (n_i + n_j - n_ij + 1)`, which lies strictly
+//!   between 0 and 1, so that `d_ij > 0`;
+//! - a weight `sqrt(n_ij)`: pairs seen together often are known better, but a slow robot repeats
+//!   itself, so that the information grows more slowly than the count.
+
+use covimap_embed::{Pair, PairDistances};
+use petgraph::graph::UnGraph;
+use rayon::prelude::*;
+
+use crate::{CoVisibility, LandmarkId};
+
+/// The paper's `alpha_2`; it sets the unit of the map.
+const ALPHA: f64 = 0.3;
+
+/// One end of a link, as stored in the row of the other end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// The landmark at the other end.
+    pub to: u32,
+    /// Distance in map units, `> 0`.
+    pub distance: f64,
+    /// Weight in the stress, `> 0`.
+    pub weight: f64,
+}
+
+/// The links of all landmarks, one ascending row a landmark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkGraph {
+    starts: Vec<usize>,
+    links: Vec<Link>,
+}
+
+impl LinkGraph {
+    /// The link of every pair that was seen together.
+    #[must_use]
+    pub fn from_counts(counts: &CoVisibility) -> Self {
+        let rows: Vec<Vec<Link>> = (0..counts.landmarks() as u32)
+            .into_par_iter()
+            .map(|i| {
+                let (partners, together) = counts.row(LandmarkId(i));
+                let n_i = counts.sightings()[i as usize];
+                let link = |(&to, &both): (&u32, &u32)| {
+                    link(to, f64::from(n_i), f64::from(counts.sightings()[to as usize]), f64::from(both))
+                };
+                partners.iter().zip(together).map(link).collect()
+            })
+            .collect();
+        Self::from_rows(rows)
+    }
+
+    pub(crate) fn from_rows(rows: Vec<Vec<Link>>) -> Self {
+        let mut starts = Vec::with_capacity(rows.len() + 1);
+        starts.push(0);
+        let mut links = Vec::with_capacity(rows.iter().map(Vec::len).sum());
+        for row in rows {
+            links.extend(row);
+            starts.push(links.len());
+        }
+        Self { starts, links }
+    }
+
+    /// Number of landmarks.
+    #[must_use]
+    pub fn landmarks(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of links.
+    #[must_use]
+    pub fn link_count(&self) -> usize {
+        self.links.len() / 2
+    }
+
+    /// The links of one landmark, ascending.
+    #[must_use]
+    pub fn of(&self, landmark: u32) -> &[Link] {
+        &self.links[self.starts[landmark as usize]..self.starts[landmark as usize + 1]]
+    }
+
+    /// The part of the graph on `members` (ascending), renumbered by their places in it.
+    #[must_use]
+    pub fn restricted_to(&self, members: &[u32]) -> Self {
+        let rows = members.iter().map(|&member| {
+            // Both lists ascend: walk them together.
+            let mut place = 0;
+            self.of(member)
+                .iter()
+                .filter_map(|link| {
+                    place += members[place..].partition_point(|&other| other < link.to);
+                    (members.get(place) == Some(&link.to)).then(|| Link { to: place as u32, ..*link })
+                })
+                .collect()
+        });
+        Self::from_rows(rows.collect())
+    }
+
+    /// The links as a weighted scaling problem.
+    ///
+    /// # Panics
+    /// Never: rows ascend and distances and weights are positive by construction.
+    #[must_use]
+    pub fn to_pairs(&self) -> PairDistances {
+        let pairs = (0..self.landmarks() as u32)
+            .flat_map(|i| {
+                self.of(i).iter().filter(move |link| link.to > i).map(move |link| Pair {
+                    i,
+                    j: link.to,
+                    distance: link.distance,
+                    weight: link.weight,
+                })
+            })
+            .collect();
+        PairDistances::new(self.landmarks(), pairs).expect("links form a valid pair list (bug in covimap)")
+    }
+
+    /// The graph for petgraph's algorithms: node k is landmark k, edges carry the distance.
+    #[must_use]
+    pub fn to_petgraph(&self) -> UnGraph<(), f64> {
+        let mut graph = UnGraph::with_capacity(self.landmarks(), self.link_count());
+        for _ in 0..self.landmarks() {
+            graph.add_node(());
+        }
+        for i in 0..self.landmarks() as u32 {
+            for link in self.of(i).iter().filter(|link| link.to > i) {
+                graph.add_edge(i.into(), link.to.into(), link.distance);
+            }
+        }
+        graph
+    }
+
+    /// The landmarks of each connected component, ascending; the largest component first, equal
+    /// ones by their first landmark.
+    #[must_use]
+    pub fn components(&self) -> Vec<Vec<u32>> {
+        let mut found = vec![false; self.landmarks()];
+        let mut components = Vec::new();
+        for first in 0..self.landmarks() as u32 {
+            if found[first as usize] {
+                continue;
+            }
+            found[first as usize] = true;
+            let mut members = vec![first];
+            let mut next = 0;
+            while next < members.len() {
+                for link in self.of(members[next]) {
+                    if !std::mem::replace(&mut found[link.to as usize], true) {
+                        members.push(link.to);
+                    }
+                }
+                next += 1;
+            }
+            members.sort_unstable();
+            components.push(members);
+        }
+        components.sort_by_key(|members| (std::cmp::Reverse(members.len()), members[0]));
+        components
+    }
+}
+
+fn link(to: u32, n_i: f64, n_j: f64, both: f64) -> Link {
+    let frequency = (both + 0.5) / (n_i + n_j - both + 1.0);
+    Link { to, distance: (-ALPHA * frequency.ln()).sqrt(), weight: both.sqrt() }
+}
