@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use covimap_embed::Point;
+
 /// Why a log could not be read or a map not be built, read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -26,5 +28,32 @@ pub enum MapError {
         /// The system's own words.
         #[source]
         source: std::io::Error,
+    },
+    /// A map file of a format that this build cannot read.
+    #[error(
+        "{file}: map file is format {found}, this build reads {known}; use the covimap that wrote it or build \
+         the map again"
+    )]
+    MapFormat {
+        /// File as the user named it.
+        file: String,
+        /// Format number of the file.
+        found: u64,
+        /// Format number that this build reads.
+        known: u64,
+    },
+    /// Parts of a map that contradict each other.
+    #[error("{what}")]
+    InvalidMap {
+        /// Which landmark or setting is wrong; what to do.
+        what: String,
+    },
+    /// A point that is nowhere.
+    #[error("point {index} is at ({}, {}), positions must be finite; leave it out", position[0], position[1])]
+    NotFinite {
+        /// Index of the point in its list.
+        index: usize,
+        /// Its coordinates.
+        position: Point,
     },
 }

@@ -2,7 +2,9 @@
 
 use covimap_embed::Point;
 
-use crate::{BuildReport, LandmarkNames, MapperParams};
+use rustc_hash::FxHashSet;
+
+use crate::{BuildReport, LandmarkNames, MapError, MapperParams};
 
 /// Where one landmark was placed, and on what evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +31,38 @@ pub struct GlobalMap {
 }
 
 impl GlobalMap {
+    /// Puts a map together from its parts, `landmarks[i]` being the landmark `names[i]`.
+    ///
+    /// # Errors
+    /// [`MapError::InvalidMap`] when the two differ in length, a position is not finite, or an ID stands
+    /// there twice.
+    pub fn from_parts(
+        names: LandmarkNames,
+        landmarks: Vec<PlacedLandmark>,
+        params: MapperParams,
+        report: BuildReport,
+    ) -> Result<Self, MapError> {
+        let invalid = |what| Err(MapError::InvalidMap { what });
+        if names.len() != landmarks.len() {
+            return invalid(format!("{} IDs for {} landmarks; give one each", names.len(), landmarks.len()));
+        }
+        let mut known = FxHashSet::with_capacity_and_hasher(names.len(), rustc_hash::FxBuildHasher);
+        for (index, (id, placed)) in names.iter().zip(&landmarks).enumerate() {
+            let [x, y] = placed.position;
+            if !(x.is_finite() && y.is_finite()) {
+                return invalid(format!(
+                    "landmark {index} {id:?} is at ({x}, {y}), positions must be finite"
+                ));
+            }
+            if !known.insert(id) {
+                return invalid(format!(
+                    "landmark {index} has the ID {id:?} of another one; build the map again"
+                ));
+            }
+        }
+        Ok(Self { names, landmarks, params, report })
+    }
+
     /// Number of landmarks.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -63,5 +97,31 @@ impl GlobalMap {
     #[must_use]
     pub fn report(&self) -> &BuildReport {
         &self.report
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_that_contradict_each_other_make_no_map() {
+        let at = |position| PlacedLandmark { position, component: 0, region: 0, sightings: 1, partners: 0 };
+        let refusal = |ids: &[&str], positions: &[Point]| {
+            let names = ids.iter().copied().collect();
+            let landmarks = positions.iter().copied().map(at).collect();
+            GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default())
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(refusal(&["A"], &[]), "1 IDs for 0 landmarks; give one each");
+        assert_eq!(
+            refusal(&["A"], &[[f64::NAN, 1.0]]),
+            "landmark 0 \"A\" is at (NaN, 1), positions must be finite"
+        );
+        assert_eq!(
+            refusal(&["A", "A"], &[[0.0; 2]; 2]),
+            "landmark 1 has the ID \"A\" of another one; build the map again"
+        );
     }
 }

@@ -1,16 +1,21 @@
 //! A log of which landmarks were seen together in, a global map out.
 
 mod covisibility;
+mod delaunay;
 mod error;
 mod global_map;
 mod landmarks;
 mod links;
+mod map_file;
+pub mod output;
 mod params;
 mod progress;
 mod regions;
 mod report;
+mod truth;
 
 pub use covisibility::CoVisibility;
+pub use delaunay::delaunay_edges;
 pub use error::MapError;
 pub use global_map::{GlobalMap, PlacedLandmark};
 pub use landmarks::{LandmarkId, LandmarkNames};
@@ -19,3 +24,4 @@ pub use params::{ClassicalParams, MapperParams, Method, Phi};
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
+pub use truth::Truth;
