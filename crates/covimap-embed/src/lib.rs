@@ -4,10 +4,13 @@
 //! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
 //! is not listed is *unknown*, which is not the same as far away.
 
+mod closure;
+mod distances;
 mod error;
 mod pairs;
 mod similarity;
 
+pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use pairs::{Pair, PairDistances};
 pub use similarity::Similarity;
