@@ -4,12 +4,15 @@
 //! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
 //! is not listed is *unknown*, which is not the same as far away.
 
+mod classical;
 mod closure;
 mod distances;
+mod eigen;
 mod error;
 mod pairs;
 mod similarity;
 
+pub use classical::{ClassicalScaling, classical_scaling};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use pairs::{Pair, PairDistances};
