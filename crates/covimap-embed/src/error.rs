@@ -46,4 +46,32 @@ pub enum EmbedError {
         /// Objects of the problem.
         wanted: usize,
     },
+    /// An entry of a distance table is not usable.
+    #[error("distance of objects ({i}, {j}) is {distance}: {what}")]
+    BadDistance {
+        /// Row of the entry.
+        i: usize,
+        /// Column of the entry.
+        j: usize,
+        /// The entry.
+        distance: f64,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
+    /// A table has not as many entries as its number of objects asks.
+    #[error("{entries} entries are no table of {n} objects; give {n} rows of {n}")]
+    NotSquare {
+        /// Number of objects.
+        n: usize,
+        /// Number of entries given.
+        entries: usize,
+    },
+    /// A method that needs every distance was given an unknown one.
+    #[error("nothing is known of pair ({i}, {j}); take the metric closure of one connected component first")]
+    UnknownDistance {
+        /// First object.
+        i: usize,
+        /// Second object.
+        j: usize,
+    },
 }

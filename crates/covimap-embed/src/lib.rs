@@ -4,6 +4,10 @@
 //! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
 //! is not listed is *unknown*, which is not the same as far away.
 
+mod classical;
+mod closure;
+mod distances;
+mod eigen;
 mod error;
 mod laplacian;
 mod newton;
@@ -13,6 +17,8 @@ mod smacof;
 mod solve;
 mod stress;
 
+pub use classical::{ClassicalScaling, classical_scaling};
+pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use newton::newton;
 pub use pairs::{Pair, PairDistances};
