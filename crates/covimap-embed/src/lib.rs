@@ -10,12 +10,16 @@ mod distances;
 mod eigen;
 mod error;
 mod pairs;
+mod procrustes;
 mod similarity;
 
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use pairs::{Pair, PairDistances};
+pub use procrustes::{
+    Correspondence, ProcrustesFit, ProcrustesOptions, Reflection, RobustFit, procrustes, robust_procrustes,
+};
 pub use similarity::Similarity;
 
 /// A position in the plane, `[x, y]`.
