@@ -74,4 +74,24 @@ pub enum EmbedError {
         /// Second object.
         j: usize,
     },
+    /// A pair of points is not usable.
+    #[error("pair of points {index}: {what}")]
+    BadCorrespondence {
+        /// Position in the list.
+        index: usize,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
+    /// A fit was asked of fewer than two distinct points.
+    #[error("{pairs} pairs of points coincide in one frame; a fit needs two distinct points in both")]
+    CoincidingPoints {
+        /// Number of pairs.
+        pairs: usize,
+    },
+    /// Every rotation fits equally well.
+    #[error("{pairs} pairs of points favour no rotation; allow reflection or give more pairs")]
+    UndeterminedRotation {
+        /// Number of pairs.
+        pairs: usize,
+    },
 }

@@ -12,6 +12,7 @@ mod error;
 mod laplacian;
 mod newton;
 mod pairs;
+mod procrustes;
 mod similarity;
 mod smacof;
 mod solve;
@@ -22,6 +23,9 @@ pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use newton::newton;
 pub use pairs::{Pair, PairDistances};
+pub use procrustes::{
+    Correspondence, ProcrustesFit, ProcrustesOptions, Reflection, RobustFit, procrustes, robust_procrustes,
+};
 pub use similarity::Similarity;
 pub use smacof::smacof;
 pub use solve::{Embedding, StopRule, Termination};
