@@ -7,6 +7,7 @@ mod landmarks;
 mod params;
 mod progress;
 mod report;
+mod sightings;
 
 pub use covisibility::CoVisibility;
 pub use error::MapError;
@@ -15,3 +16,6 @@ pub use landmarks::{LandmarkId, LandmarkNames};
 pub use params::{ClassicalParams, MapperParams, Method, Phi};
 pub use progress::{Observer, Silent, Stage};
 pub use report::{BuildReport, ComponentReport, Warning};
+pub use sightings::{
+    JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
+};
