@@ -56,4 +56,28 @@ pub enum MapError {
         /// Its coordinates.
         position: Point,
     },
+    /// Neither the name nor the first bytes of a log tell its format.
+    #[error(
+        "{file}: cannot tell the log format from the name or the first line; \
+         name it (--format jsonl, csv or text)"
+    )]
+    UnknownFormat {
+        /// File as the user named it, `<stdin>` for standard input.
+        file: String,
+    },
+    /// A log was read to its end without a step.
+    #[error("{sources}: no step in the log; a step is a line like {{\"t\": 12.5, \"seen\": [\"A\", \"B\"]}}")]
+    NoSteps {
+        /// The files read, as the user named them.
+        sources: String,
+    },
+    /// Counts given by the caller contradict each other.
+    #[error("{what}")]
+    BadCounts {
+        /// Which, and what is asked.
+        what: String,
+    },
+    /// The caller's [`crate::Observer`] asked to stop.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
 }

@@ -13,6 +13,7 @@ mod progress;
 mod regions;
 mod report;
 mod truth;
+mod sightings;
 
 pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
@@ -25,3 +26,6 @@ pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
 pub use truth::Truth;
+pub use sightings::{
+    JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
+};

@@ -1,0 +1,119 @@
+//! Steps as numbers: what one block of text becomes, and how blocks become a log.
+//!
+//! Blocks are tokenised in parallel against the names known so far, which nobody changes
+//! meanwhile. A name that is new gets a provisional number behind them. The blocks are then
+//! absorbed one by one, in file order: that gives new names their final numbers in the order of
+//! first appearance, whatever the number of threads and the size of the blocks.
+
+use rayon::prelude::*;
+
+use super::interner::{Interner, NameHash};
+use super::problem::Problems;
+
+/// The steps of one block.
+#[derive(Debug, Default)]
+pub(super) struct Tokens {
+    /// Names that were unknown when the block was tokenised.
+    fresh: Interner,
+    seen: Vec<u32>,
+    /// End of each step in `seen`.
+    ends: Vec<usize>,
+    /// IDs that occurred again within their step.
+    duplicates: u64,
+    /// Lines of the block that were refused.
+    pub(super) problems: Problems,
+}
+
+impl Tokens {
+    /// Appends a step: sorted, each landmark once.
+    pub(super) fn push_step<S: AsRef<str>>(&mut self, known: &Interner, ids: impl IntoIterator<Item = S>) {
+        let start = self.seen.len();
+        for id in ids {
+            let id = id.as_ref();
+            let hash = NameHash::of(id);
+            let number = known.find(hash, id).unwrap_or_else(|| known.len() + self.fresh.intern(hash, id));
+            self.seen.push(number);
+        }
+        self.duplicates += sort_and_dedup(&mut self.seen, start);
+        self.ends.push(self.seen.len());
+    }
+
+    /// Replaces provisional numbers (those from `known` on) by final ones.
+    fn renumber(&mut self, known: u32, finals: &[u32]) {
+        let mut start = 0;
+        for &end in &self.ends {
+            let step = &mut self.seen[start..end];
+            // A step is ascending, so its last number tells whether any is provisional.
+            let first = step.partition_point(|&number| number < known);
+            if first < step.len() {
+                for number in &mut step[first..] {
+                    *number = finals[(*number - known) as usize];
+                }
+                step[first..].sort_unstable();
+            }
+            start = end;
+        }
+    }
+}
+
+/// Sorts `seen[start..]`, drops repetitions, and returns how many there were.
+fn sort_and_dedup(seen: &mut Vec<u32>, start: usize) -> u64 {
+    seen[start..].sort_unstable();
+    let mut kept = start;
+    for next in start..seen.len() {
+        if kept == start || seen[next] != seen[kept - 1] {
+            seen[kept] = seen[next];
+            kept += 1;
+        }
+    }
+    let dropped = seen.len() - kept;
+    seen.truncate(kept);
+    dropped as u64
+}
+
+/// All steps so far.
+#[derive(Debug)]
+pub(super) struct LogBuilder {
+    pub(super) names: Interner,
+    pub(super) seen: Vec<u32>,
+    /// Start of each step in `seen`, and the end of the last.
+    pub(super) starts: Vec<usize>,
+    pub(super) duplicates: u64,
+}
+
+impl LogBuilder {
+    pub(super) fn new() -> Self {
+        Self { names: Interner::default(), seen: Vec::new(), starts: vec![0], duplicates: 0 }
+    }
+
+    /// Adds a landmark to the step that is being made.
+    pub(super) fn push_sighting(&mut self, id: &str) {
+        self.seen.push(self.names.intern(NameHash::of(id), id));
+    }
+
+    /// Ends the step that the last sightings make.
+    pub(super) fn end_step(&mut self) {
+        let start = *self.starts.last().expect("starts begin with 0 (bug in covimap)");
+        self.duplicates += sort_and_dedup(&mut self.seen, start);
+        self.starts.push(self.seen.len());
+    }
+
+    /// Appends blocks that were all tokenised against the present `names`, in file order.
+    pub(super) fn absorb(&mut self, blocks: Vec<Tokens>) {
+        let known = self.names.len();
+        let finals: Vec<Vec<u32>> = blocks.iter().map(|block| self.adopt(&block.fresh)).collect();
+        let mut blocks = blocks;
+        blocks.par_iter_mut().zip(&finals).for_each(|(block, finals)| block.renumber(known, finals));
+        for block in blocks {
+            let offset = self.seen.len();
+            self.seen.extend_from_slice(&block.seen);
+            self.starts.extend(block.ends.iter().map(|end| offset + end));
+            self.duplicates += block.duplicates;
+        }
+    }
+
+    /// Final numbers of a block's new names; a block before it may have brought them already.
+    fn adopt(&mut self, fresh: &Interner) -> Vec<u32> {
+        fresh.names().iter().map(|name| self.names.intern(NameHash::of(name), name)).collect()
+    }
+}
