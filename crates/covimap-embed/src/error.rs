@@ -18,4 +18,52 @@ pub enum EmbedError {
         /// What is wrong and what is asked.
         what: &'static str,
     },
+    /// An entry of a distance table is not usable.
+    #[error("distance of objects ({i}, {j}) is {distance}: {what}")]
+    BadDistance {
+        /// Row of the entry.
+        i: usize,
+        /// Column of the entry.
+        j: usize,
+        /// The entry.
+        distance: f64,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
+    /// A table has not as many entries as its number of objects asks.
+    #[error("{entries} entries are no table of {n} objects; give {n} rows of {n}")]
+    NotSquare {
+        /// Number of objects.
+        n: usize,
+        /// Number of entries given.
+        entries: usize,
+    },
+    /// A method that needs every distance was given an unknown one.
+    #[error("nothing is known of pair ({i}, {j}); take the metric closure of one connected component first")]
+    UnknownDistance {
+        /// First object.
+        i: usize,
+        /// Second object.
+        j: usize,
+    },
+    /// A pair of points is not usable.
+    #[error("pair of points {index}: {what}")]
+    BadCorrespondence {
+        /// Position in the list.
+        index: usize,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
+    /// A fit was asked of fewer than two distinct points.
+    #[error("{pairs} pairs of points coincide in one frame; a fit needs two distinct points in both")]
+    CoincidingPoints {
+        /// Number of pairs.
+        pairs: usize,
+    },
+    /// Every rotation fits equally well.
+    #[error("{pairs} pairs of points favour no rotation; allow reflection or give more pairs")]
+    UndeterminedRotation {
+        /// Number of pairs.
+        pairs: usize,
+    },
 }

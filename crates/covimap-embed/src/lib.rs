@@ -4,12 +4,22 @@
 //! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
 //! is not listed is *unknown*, which is not the same as far away.
 
+mod classical;
+mod closure;
+mod distances;
+mod eigen;
 mod error;
 mod pairs;
+mod procrustes;
 mod similarity;
 
+pub use classical::{ClassicalScaling, classical_scaling};
+pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use pairs::{Pair, PairDistances};
+pub use procrustes::{
+    Correspondence, ProcrustesFit, ProcrustesOptions, Reflection, RobustFit, procrustes, robust_procrustes,
+};
 pub use similarity::Similarity;
 
 /// A position in the plane, `[x, y]`.
