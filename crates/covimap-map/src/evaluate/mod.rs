@@ -101,7 +101,7 @@ pub struct Evaluation {
 ///
 /// # Errors
 /// [`MapError::NoCommonLandmarks`] when no ID stands in both, [`MapError::TooFewCommon`] when no
-/// component holds three of those that do.
+/// component holds three of those that do, [`MapError::Embed`] for coordinates above 1e100.
 ///
 /// # Complexity
 /// `O(n log n)`, and `O(n^3)` for components of up to `params.exact_up_to` landmarks.
@@ -119,7 +119,7 @@ pub fn against(map: &GlobalMap, truth: &Truth, params: &EvaluateParams) -> Resul
         recall += near.recall(&chart.truth, &NearestNeighbours::of(&chart.map, &map_edges));
         local += orientation::near(chart, &near, mirrored);
     }
-    let residual = Residual::of(&charts);
+    let residual = Residual::of(&charts)?;
     Ok(Evaluation {
         n,
         components: charts.len(),

@@ -1,8 +1,9 @@
 //! Residuals after the best similarity fit.
 
-use covimap_embed::{Point, Similarity};
+use covimap_embed::{Correspondence, EmbedError, Point, ProcrustesOptions, Similarity, procrustes};
 
 use super::Chart;
+use crate::MapError;
 
 /// Sums of squares over charts, each aligned by itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -15,18 +16,20 @@ pub(super) struct Residual {
 }
 
 impl Residual {
-    pub fn of(charts: &[Chart]) -> Self {
+    pub fn of(charts: &[Chart]) -> Result<Self, MapError> {
         let mut sum = Self::default();
         for chart in charts {
-            let truth_from_map = truth_from_map(chart);
+            let truth_from_map = truth_from_map(chart)?;
             let centre = centroid(&chart.truth);
             sum.landmarks += chart.len();
             for (&map, &truth) in chart.map.iter().zip(&chart.truth) {
-                sum.residual += squared(truth_from_map.apply(map), truth);
+                // Where nothing turns the map onto the truth, the best fit has scale 0.
+                let aligned = truth_from_map.map_or(centre, |fit| fit.apply(map));
+                sum.residual += squared(aligned, truth);
                 sum.spread += squared(centre, truth);
             }
         }
-        sum
+        Ok(sum)
     }
 
     /// Root mean square residual.
@@ -40,33 +43,16 @@ impl Residual {
     }
 }
 
-/// The similarity, mirror image allowed, that brings the map nearest to the truth.
-pub(crate) fn truth_from_map(chart: &Chart) -> Similarity {
-    let (from, to) = (centroid(&chart.map), centroid(&chart.truth));
-    let (mut plain, mut mirrored, mut size) = ([0.0; 2], [0.0; 2], 0.0);
-    for (m, t) in chart.map.iter().zip(&chart.truth) {
-        let (m, t) = ([m[0] - from[0], m[1] - from[1]], [t[0] - to[0], t[1] - to[1]]);
-        plain[0] += m[0] * t[0] + m[1] * t[1];
-        plain[1] += m[0] * t[1] - m[1] * t[0];
-        mirrored[0] += m[0] * t[0] - m[1] * t[1];
-        mirrored[1] += m[0] * t[1] + m[1] * t[0];
-        size += m[0] * m[0] + m[1] * m[1];
+/// The similarity, mirror image allowed, that brings the map nearest to the truth; `None` when no
+/// rotation is better than any other, as for a map in one place.
+pub(crate) fn truth_from_map(chart: &Chart) -> Result<Option<Similarity>, MapError> {
+    let pair = |(&source, &target)| Correspondence { source, target, weight: 1.0 };
+    let pairs: Vec<_> = chart.map.iter().zip(&chart.truth).map(pair).collect();
+    match procrustes(&pairs, ProcrustesOptions::default()) {
+        Ok(fit) => Ok(Some(fit.target_from_source)),
+        Err(EmbedError::CoincidingPoints { .. } | EmbedError::UndeterminedRotation { .. }) => Ok(None),
+        Err(error) => Err(error.into()),
     }
-    let length = |v: [f64; 2]| v[0].hypot(v[1]);
-    let mirror = length(mirrored) > length(plain);
-    let best = if mirror { mirrored } else { plain };
-    if length(best) == 0.0 {
-        return Similarity { scale: 0.0, shift: to, ..Similarity::IDENTITY };
-    }
-    let turn = Similarity {
-        cos: best[0] / length(best),
-        sin: best[1] / length(best),
-        mirrored: mirror,
-        scale: length(best) / size,
-        shift: [0.0; 2],
-    };
-    let moved = turn.apply(from);
-    Similarity { shift: [to[0] - moved[0], to[1] - moved[1]], ..turn }
 }
 
 fn centroid(points: &[Point]) -> Point {

@@ -156,6 +156,14 @@ fn degenerate_shapes_give_null_and_no_nan() {
     assert!(serde_json::to_string(&unsurveyable).unwrap().contains("\"relative_rmse\":null"));
 }
 
+#[test]
+fn coordinates_beyond_all_reason_are_refused() {
+    let rows = [("A", [1e200, 0.0], 0), ("B", [0.0, 0.0], 0), ("C", [0.0, 1e200], 0)];
+    let surveyed = truth(&[("A", [1.0, 0.0]), ("B", [0.0, 0.0]), ("C", [0.0, 1.0])]);
+    let error = against(&map(&rows), &surveyed, &EvaluateParams::default()).unwrap_err();
+    assert_eq!(error.to_string(), "pair of points 0: coordinates must be finite and at most 1e100");
+}
+
 proptest! {
     #[test]
     fn a_map_that_is_the_truth_in_another_frame_is_perfect(
@@ -181,7 +189,7 @@ proptest! {
         let (in_map, in_truth): (Vec<Point>, Vec<Point>) = pairs.into_iter().unzip();
         let landmarks = Vec::new();
         let chart = Chart { component: 0, landmarks, map: in_map.clone(), truth: in_truth.clone() };
-        let best = truth_from_map(&chart);
+        let best = truth_from_map(&chart).unwrap().unwrap();
         let [dx, dy, turn, scale] = nudge;
         let nudge =
             Similarity { cos: turn.cos(), sin: turn.sin(), mirrored: mirror, scale, shift: [dx, dy] };
