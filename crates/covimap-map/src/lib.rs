@@ -5,6 +5,7 @@ mod classical;
 mod covisibility;
 mod delaunay;
 mod error;
+pub mod evaluate;
 mod global_map;
 mod landmarks;
 mod links;
