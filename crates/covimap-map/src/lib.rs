@@ -1,7 +1,7 @@
 //! A log of which landmarks were seen together in, a global map out.
 
-mod chart;
 mod classical;
+mod component;
 mod covisibility;
 mod delaunay;
 mod error;
