@@ -4,6 +4,7 @@ mod covisibility;
 mod delaunay;
 mod error;
 pub mod evaluate;
+pub mod export;
 mod global_map;
 mod landmarks;
 mod map_file;
