@@ -6,6 +6,7 @@ mod covisibility;
 mod delaunay;
 mod error;
 pub mod evaluate;
+pub mod export;
 mod global_map;
 mod landmarks;
 mod links;
