@@ -12,7 +12,7 @@
 use std::borrow::Cow;
 
 use super::interner::{Interner, NameHash};
-use super::read::check_id;
+use super::lines::{check_id, excerpt};
 use super::tokens::LogBuilder;
 use crate::LandmarkId;
 
@@ -78,10 +78,10 @@ impl Rows {
         }
         let hash = NameHash::of(step);
         if self.steps.find(hash, step).is_some() {
-            let step: String = step.chars().take(MAX_QUOTED).collect();
             return Err(format!(
-                "step `{step}` has rows further up, with other steps between; rows of one step must be \
-                 contiguous, sort the file by step"
+                "step {} has rows further up, with other steps between; rows of one step must be \
+                 contiguous, sort the file by step",
+                excerpt(step)
             ));
         }
         if self.step.is_some() {
@@ -92,21 +92,16 @@ impl Rows {
     }
 }
 
-/// Characters of the input that a message repeats.
-const MAX_QUOTED: usize = 60;
-
 fn read_header(line: &str) -> Result<Header, String> {
     let fields = fields(line)?;
     let column = |name: &str| fields.iter().position(|field| field == name);
     match (column("step"), column("landmark")) {
         (Some(step), Some(landmark)) => Ok(Header::Columns { step, landmark, width: fields.len() }),
-        _ => {
-            let found: String = line.trim_ascii().chars().take(MAX_QUOTED).collect();
-            Err(format!(
-                "the header must name the columns `step` and `landmark`, but the first line is `{found}`; \
-                 put `step,landmark` in front, separated by a comma"
-            ))
-        }
+        _ => Err(format!(
+            "the header must name the columns `step` and `landmark`, but the first line is {}; put \
+             `step,landmark` in front, with a comma between",
+            excerpt(line.trim_ascii())
+        )),
     }
 }
 

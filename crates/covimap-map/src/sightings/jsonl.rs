@@ -12,10 +12,11 @@ use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAcce
 
 /// Reads one line; `false` if it is blank.
 pub(super) fn parse_line<'a>(line: &'a str, ids: &mut Vec<Cow<'a, str>>) -> Result<bool, String> {
+    let start = ids.len();
     if scan(line.as_bytes(), line, ids).is_some() {
         return Ok(true);
     }
-    ids.clear();
+    ids.truncate(start);
     if line.bytes().all(|byte| byte.is_ascii_whitespace()) {
         return Ok(false);
     }
@@ -296,3 +297,6 @@ impl<'de> Visitor<'de> for IdVisitor {
         Ok(Id(Cow::Owned(id.to_string())))
     }
 }
+
+#[cfg(test)]
+mod tests;
