@@ -21,12 +21,14 @@ pub struct CoVisibility {
 impl CoVisibility {
     /// Counts a log: exact, and the same for any number of threads.
     ///
-    /// Time O(sum over steps of k^2) for steps of k landmarks, shared by all threads; memory beside
-    /// the result is 4 bytes a sighting and half of the result.
+    /// Time O(sum over steps of k^2) for steps of k landmarks, shared by all threads. The result
+    /// takes 16 bytes a pair; while it is made, 4 bytes a sighting, or 8 bytes a pair, come on top.
+    /// Tells the observer of [`crate::Stage::Count`], counted in landmarks.
     ///
     /// # Errors
     ///
-    /// [`MapError::Interrupted`] if the observer asks for it.
+    /// - [`MapError::TooManySteps`]: the log has 2^32 steps or more.
+    /// - [`MapError::Interrupted`]: the observer asked for it.
     pub fn count(log: &SightingLog, observer: &dyn Observer) -> Result<Self, MapError> {
         count::count(log, observer)
     }

@@ -3,7 +3,7 @@
 //! Rows of one step follow each other; a step that comes back later is an error, because two
 //! half steps would make two landmarks look apart that were seen together. The values of `step`
 //! are names, not numbers: they need not ascend. The reader keeps every one of them until the end
-//! of the file, some 20 bytes a step.
+//! of the file, some 30 bytes a step.
 //!
 //! A row is one line: a quoted field must not run over a line end, so that one missing quote is
 //! found on its line and does not swallow the rest of the file. White space around a field is no
