@@ -66,8 +66,6 @@ const SENSOR_SETS: usize = 4096;
 const LONGEST_MOVE: f64 = 0.2;
 /// Done when the landmarks move by less than this share of the range in the mean.
 const STILL: f64 = 2e-3;
-/// Detectability that every landmark starts with.
-const DETECTABILITY: f64 = 0.9;
 
 /// Positions and detectabilities under refinement.
 pub(crate) struct Model {
@@ -86,9 +84,10 @@ pub(crate) fn refine(
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
     let range = half_far_link(graph, &start);
-    let sensor = Sensor { range, edge: 0.15 * range };
-    let mut model = Model { detectability: vec![DETECTABILITY; start.len()], points: start, sensor };
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
+    let mut model = Model { detectability: Vec::new(), points: start, sensor };
     for _ in 0..SENSOR_STEPS {
+        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
         model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
     }
     for _ in 0..iterations {
@@ -111,7 +110,7 @@ impl Model {
         for ((point, p), scores) in self.points.iter_mut().zip(&mut self.detectability).zip(scores) {
             let step = scores.step(longest);
             *point = [point[0] + step[0], point[1] + step[1]];
-            *p = scores.improved_detectability(*p);
+            *p = scores.improved_detectability(*p, self.sensor.detectability);
             length += step[0].hypot(step[1]);
         }
         length / scores.len() as f64

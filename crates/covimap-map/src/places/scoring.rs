@@ -9,16 +9,13 @@
 use covimap_embed::Point;
 
 use super::posterior::Step;
-use super::sensor::{Curve, probability};
+use super::sensor::{Curve, DETECTABILITY, probability};
 
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
 const RIDGE: f64 = 0.05;
-/// What is believed of a detectability before any sighting: its mean, and as how many sightings'
-/// information that counts.
-const PRIOR: (f64, f64) = (0.9, 100.0);
-/// Bounds of a detectability.
-const DETECTABILITY: (f64, f64) = (0.02, 0.995);
+/// Information that the common detectability counts for against a landmark's own sightings.
+const PRIOR_INFORMATION: f64 = 100.0;
 
 /// Scores of one landmark.
 #[derive(Debug, Clone, Copy, Default)]
@@ -106,10 +103,10 @@ impl Scores {
         if length > longest { step.map(|c| c * longest / length) } else { step }
     }
 
-    /// The detectability after a Fisher-scoring step from `p`.
-    pub fn improved_detectability(&self, p: f64) -> f64 {
-        let (mean, weight) = PRIOR;
-        let step = (self.detectability + weight * (mean - p)) / (self.detectability_information + weight);
+    /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.
+    pub fn improved_detectability(&self, p: f64, common: f64) -> f64 {
+        let score = self.detectability + PRIOR_INFORMATION * (common - p);
+        let step = score / (self.detectability_information + PRIOR_INFORMATION);
         (p + step).clamp(DETECTABILITY.0, DETECTABILITY.1)
     }
 }

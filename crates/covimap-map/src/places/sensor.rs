@@ -10,6 +10,10 @@ const NARROWEST: f64 = 0.03;
 const RANGE_STEP: f64 = 0.1;
 /// Largest change of the edge's logarithm in one step.
 const EDGE_STEP: f64 = 0.3;
+/// Largest change of the common detectability in one step.
+const DETECTABILITY_STEP: f64 = 0.2;
+/// Bounds of a detectability.
+pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
 /// Entries of the table of the visibility curve over squared distance.
 const TABLE: usize = 4096;
 
@@ -20,6 +24,8 @@ pub(crate) struct Sensor {
     pub range: f64,
     /// Width `s` of the range's soft edge.
     pub edge: f64,
+    /// Detectability of a landmark of which nothing else is known.
+    pub detectability: f64,
 }
 
 impl Sensor {
@@ -46,7 +52,8 @@ impl Curve {
     pub fn new(sensor: Sensor, farthest: f64) -> Self {
         let per_square = TABLE as f64 / (farthest * farthest);
         let entry = |k: usize| {
-            let distance = ((k as f64 + 0.5) / per_square).sqrt();
+            // The first entry covers half a step; anywhere in it is as good.
+            let distance = ((k as f64).max(0.25) / per_square).sqrt();
             let v = sensor.visibility(distance);
             [v, v * (1.0 - v) / (sensor.edge * distance)]
         };
@@ -54,17 +61,22 @@ impl Curve {
     }
 
     pub fn at(&self, square: f64) -> [f64; 2] {
-        self.entries[((square * self.per_square) as usize).min(TABLE)]
+        // Adding 2^52 leaves the rounded number in the low bits: a cast that costs no branch.
+        let nearest = (square * self.per_square).min(TABLE as f64) + 4_503_599_627_370_496.0;
+        self.entries[(nearest.to_bits() & 0xffff) as usize]
     }
 }
 
-/// Score and information of the range and of the logarithm of the edge.
+/// Score and information of the range, of the logarithm of the edge and of a change of all
+/// detectabilities.
 ///
-/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R` and `(d - R)` times that by `ln s`.
+/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
+/// `p`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SensorScores {
     range: [f64; 2],
     log_edge: [f64; 2],
+    detectability: [f64; 2],
 }
 
 impl SensorScores {
@@ -83,18 +95,13 @@ impl SensorScores {
                 self.range[1] += information * by_range * by_range;
                 self.log_edge[0] += surprise * by_edge;
                 self.log_edge[1] += information * by_edge * by_edge;
+                self.detectability[0] += surprise * v;
+                self.detectability[1] += information * v * v;
             }
         }
     }
 
-    pub fn add(&mut self, other: &Self) {
-        for k in 0..2 {
-            self.range[k] += other.range[k];
-            self.log_edge[k] += other.log_edge[k];
-        }
-    }
-
-    /// The sensor after a Fisher-scoring step of the edge, and of the range if it is free.
+    /// The sensor after a Fisher-scoring step; the range only if it is free.
     pub fn improve(&self, sensor: Sensor, range_free: bool) -> Sensor {
         let step = |[score, information]: [f64; 2], most: f64| {
             if information > 0.0 { (score / information).clamp(-most, most) } else { 0.0 }
@@ -102,6 +109,11 @@ impl SensorScores {
         let moved = if range_free { step(self.range, RANGE_STEP * sensor.range) } else { 0.0 };
         let range = sensor.range + moved;
         let edge = sensor.edge * step(self.log_edge, EDGE_STEP).exp();
-        Sensor { range, edge: edge.max(NARROWEST * range) }
+        let detectability = sensor.detectability + step(self.detectability, DETECTABILITY_STEP);
+        Sensor {
+            range,
+            edge: edge.max(NARROWEST * range),
+            detectability: detectability.clamp(DETECTABILITY.0, DETECTABILITY.1),
+        }
     }
 }
