@@ -9,19 +9,23 @@ mod closure;
 mod distances;
 mod eigen;
 mod error;
+mod isotonic;
 mod laplacian;
 mod newton;
+mod nnls;
 mod pairs;
 mod procrustes;
 mod similarity;
 mod smacof;
 mod solve;
+mod spline;
 mod stress;
 mod synchronise;
 
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
+pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
 pub use newton::newton;
 pub use pairs::{Pair, PairDistances};
 pub use procrustes::{
@@ -30,6 +34,7 @@ pub use procrustes::{
 pub use similarity::Similarity;
 pub use smacof::smacof;
 pub use solve::{Embedding, StopRule, Termination};
+pub use spline::{MonotoneSpline, MonotoneSplineBasis};
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
 
