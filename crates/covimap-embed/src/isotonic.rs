@@ -63,10 +63,10 @@ fn pool_adjacent_violators(observations: impl Iterator<Item = (f64, f64)>) -> Ve
     let mut values = 0;
     for (value, weight) in observations {
         let (mut mean, mut total, mut count) = (value, weight, 1);
-        while let Some(&(before, weight, values)) = blocks.last().filter(|block| block.0 > mean) {
+        while let Some(&(before, weight, members)) = blocks.last().filter(|block| block.0 > mean) {
             mean = (before * weight + mean * total) / (weight + total);
             total += weight;
-            count += values;
+            count += members;
             blocks.pop();
         }
         blocks.push((mean, total, count));
