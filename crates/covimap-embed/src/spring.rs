@@ -78,11 +78,9 @@ fn pushed(pairs: &PairDistances, incidence: &Incidence, points: &[Point]) -> Vec
         let (mut push, mut stiffness) = ([0.0; 2], 0.0);
         for &(j, pair) in incidence.of(i) {
             let spring = pairs.pairs()[pair as usize];
-            let [x, y] = direction(points, i, j as usize);
-            let (dx, dy) = (points[i][0] - points[j as usize][0], points[i][1] - points[j as usize][1]);
-            let force = spring.weight * (spring.distance - dx.hypot(dy));
-            push[0] += force * x;
-            push[1] += force * y;
+            let [x, y] = pull_of(spring.distance, points, i, j as usize);
+            push[0] += spring.weight * x;
+            push[1] += spring.weight * y;
             stiffness += spring.weight;
         }
         if stiffness == 0.0 {
@@ -93,15 +91,17 @@ fn pushed(pairs: &PairDistances, incidence: &Incidence, points: &[Point]) -> Vec
     (0..points.len()).into_par_iter().with_min_len(OBJECTS).map(push).collect()
 }
 
-/// Unit vector from object `j` to object `i`; if they coincide, any one, opposite for the other.
-fn direction(points: &[Point], i: usize, j: usize) -> Point {
+/// `(d - r) u` for a spring of rest length `rest` on object `i`, held by object `j`. Where the two
+/// coincide, any direction will do, if it is the opposite one for the other.
+fn pull_of(rest: f64, points: &[Point], i: usize, j: usize) -> Point {
     let (dx, dy) = (points[i][0] - points[j][0], points[i][1] - points[j][1]);
-    let length = dx.hypot(dy);
+    let length = (dx * dx + dy * dy).sqrt();
     if length > 0.0 {
-        return [dx / length, dy / length];
+        let stretch = rest / length - 1.0;
+        return [stretch * dx, stretch * dy];
     }
     let (sin, cos) = ((i + j) as f64 * GOLDEN_TURN).sin_cos();
-    if i < j { [cos, sin] } else { [-cos, -sin] }
+    if i < j { [rest * cos, rest * sin] } else { [-rest * cos, -rest * sin] }
 }
 
 #[cfg(test)]
