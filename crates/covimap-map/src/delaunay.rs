@@ -5,8 +5,8 @@
 //!
 //! - *Scale.* Coordinates are brought near 1 by a power of two, and a far-off origin is moved
 //!   close; both steps are exact, so the edges are those of the points as given.
-//! - *Coincident points.* Each copy is joined by one edge to the lowest-numbered point at its
-//!   place and by no other. `n >= 3` points still have at most `3n - 6` edges.
+//! - *Coincident points.* The lowest-numbered one stands for its place; the copies form a path
+//!   that starts at it, in the order of their numbers. `n >= 3` points still have at most `3n - 6` edges.
 //! - *Collinear points* give the path along the line.
 //! - *Cocircular points* (a regular grid) have several valid triangulations. One of them is
 //!   returned, always the same for the same input; that of a turned copy may differ.
@@ -44,7 +44,7 @@ pub fn delaunay_edges(points: &[Point]) -> Result<Vec<(u32, u32)>, MapError> {
     let mut places = Vec::with_capacity(points.len());
     for twins in order.chunk_by(|&a, &b| points[a as usize] == points[b as usize]) {
         places.push(twins[0]);
-        edges.extend(twins[1..].iter().map(|&copy| (twins[0], copy)));
+        edges.extend(twins.windows(2).map(|pair| (pair[0], pair[1])));
     }
     // In the order given: the choice among cocircular points then does not depend on the frame.
     places.sort_unstable();

@@ -3,6 +3,7 @@
 mod covisibility;
 mod delaunay;
 mod error;
+pub mod evaluate;
 mod global_map;
 mod landmarks;
 mod links;

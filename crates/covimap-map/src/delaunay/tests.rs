@@ -99,9 +99,9 @@ fn collinear_points_give_the_path_along_the_line() {
 }
 
 #[test]
-fn copies_hang_on_the_first_point_at_their_place() {
+fn copies_form_a_path_from_the_first_point_at_their_place() {
     let all_the_same = [[3.0, 3.0]; 4];
-    assert_eq!(edges(&all_the_same), [(0, 1), (0, 2), (0, 3)]);
+    assert_eq!(edges(&all_the_same), [(0, 1), (1, 2), (2, 3)]);
     let twin = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
     assert_eq!(edges(&twin), [(0, 1), (0, 2), (1, 2), (1, 3)]);
     assert_eq!(edges(&[[0.0, 1.0], [-0.0, 1.0]]), [(0, 1)]);
