@@ -116,4 +116,49 @@ pub enum MapError {
     /// A fit or an embedding that the numbers do not allow.
     #[error(transparent)]
     Embed(#[from] EmbedError),
+    /// A setting is out of its range.
+    #[error("setting {name} is {value}; give {wanted}")]
+    BadParameter {
+        /// Name of the setting, as in the map file.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is accepted.
+        wanted: &'static str,
+    },
+    /// No two landmarks were ever seen together.
+    #[error(
+        "no step shows two landmarks - {landmarks} landmarks in {steps} steps; pool several sightings of a slow \
+         or narrow sensor into one step"
+    )]
+    NothingTogether {
+        /// Steps of the log.
+        steps: u64,
+        /// Landmarks of the log.
+        landmarks: usize,
+    },
+    /// All landmarks are always seen together: nothing tells where they are.
+    #[error(
+        "all {landmarks} landmarks are seen in the same {steps} steps, so nothing tells how far apart they are; \
+         limit the range of the sensor or move the robot further"
+    )]
+    NoInformation {
+        /// Landmarks of the log.
+        landmarks: usize,
+        /// Steps that show them.
+        steps: u32,
+    },
+    /// A component is too large for the dense method.
+    #[error(
+        "the classical method is dense and takes at most {limit} landmarks, here are {landmarks}; use --method auto"
+    )]
+    TooLargeForClassical {
+        /// Landmarks of the component.
+        landmarks: usize,
+        /// Most that the method takes.
+        limit: usize,
+    },
+    /// The scaling engine gave up.
+    #[error("scaling failed: {0}")]
+    Embed(#[from] covimap_embed::EmbedError),
 }

@@ -1,5 +1,7 @@
 //! A log of which landmarks were seen together in, a global map out.
 
+mod chart;
+mod classical;
 mod covisibility;
 mod delaunay;
 mod error;
@@ -7,26 +9,32 @@ pub mod evaluate;
 mod global_map;
 mod landmarks;
 mod links;
+mod local_map;
 mod map_file;
+mod mapper;
 pub mod output;
 mod params;
 mod progress;
 mod regions;
 mod report;
-mod truth;
 mod sightings;
+mod stitch;
+mod truth;
 
+pub use classical::{CLASSICAL_LIMIT, squared_distances};
 pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
 pub use error::MapError;
 pub use global_map::{GlobalMap, PlacedLandmark};
 pub use landmarks::{LandmarkId, LandmarkNames};
 pub use links::{Link, LinkGraph};
-pub use params::{ClassicalParams, MapperParams, Method, Phi};
+pub use local_map::LocalMap;
+pub use mapper::Mapper;
+pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionParams, StopParams};
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
-pub use truth::Truth;
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };
+pub use truth::Truth;

@@ -54,7 +54,7 @@ impl LinkGraph {
         Self::from_rows(rows)
     }
 
-    pub(crate) fn from_rows(rows: Vec<Vec<Link>>) -> Self {
+    fn from_rows(rows: Vec<Vec<Link>>) -> Self {
         let mut starts = Vec::with_capacity(rows.len() + 1);
         starts.push(0);
         let mut links = Vec::with_capacity(rows.iter().map(Vec::len).sum());
@@ -101,21 +101,25 @@ impl LinkGraph {
     }
 
     /// The links as a weighted scaling problem.
-    ///
-    /// # Panics
-    /// Never: rows ascend and distances and weights are positive by construction.
     #[must_use]
     pub fn to_pairs(&self) -> PairDistances {
-        let pairs = (0..self.landmarks() as u32)
-            .flat_map(|i| {
-                self.of(i).iter().filter(move |link| link.to > i).map(move |link| Pair {
-                    i,
-                    j: link.to,
-                    distance: link.distance,
-                    weight: link.weight,
-                })
-            })
-            .collect();
+        self.collect_pairs(|_, link| (link.distance, link.weight))
+    }
+
+    /// The linked pairs `i < j` with the distance and weight that `measure(i, j)` gives them:
+    /// a distance `>= 0` and a weight `> 0`, both finite.
+    pub(crate) fn to_pairs_with(&self, measure: impl Fn(u32, u32) -> (f64, f64)) -> PairDistances {
+        self.collect_pairs(|i, link| measure(i, link.to))
+    }
+
+    fn collect_pairs(&self, measure: impl Fn(u32, &Link) -> (f64, f64)) -> PairDistances {
+        let mut pairs = Vec::with_capacity(self.link_count());
+        for i in 0..self.landmarks() as u32 {
+            for link in self.of(i).iter().filter(|link| link.to > i) {
+                let (distance, weight) = measure(i, link);
+                pairs.push(Pair { i, j: link.to, distance, weight });
+            }
+        }
         PairDistances::new(self.landmarks(), pairs).expect("links form a valid pair list (bug in covimap)")
     }
 

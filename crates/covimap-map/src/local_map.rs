@@ -4,9 +4,7 @@
 //! away from it, so that path lengths are fair guesses of the distances that are unknown. They
 //! serve for the start only; the map itself is fitted to known distances.
 
-use covimap_embed::{
-    DistanceMatrix, EmbedError, PairDistances, Point, StopRule, classical_scaling, smacof,
-};
+use covimap_embed::{DistanceMatrix, EmbedError, PairDistances, Point, StopRule, classical_scaling, smacof};
 
 use crate::{LinkGraph, Region};
 

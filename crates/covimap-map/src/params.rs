@@ -1,6 +1,9 @@
 //! Every setting of a build, with its default and the reason for it.
 
+use covimap_embed::StopRule;
 use serde::{Deserialize, Serialize};
+
+use crate::MapError;
 
 /// Which estimator makes the map.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,6 +50,92 @@ impl Default for ClassicalParams {
     }
 }
 
+/// Sizes of the overlapping regions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
+pub struct RegionParams {
+    /// Landmarks that a core should have, `>= 4`; cores may be somewhat larger. Default 12: small
+    /// cores with wide halos fold less, and neighbouring regions share most of their landmarks.
+    pub core: usize,
+    /// Most landmarks of a region, halo included, `> core`. A component of at most this many is one
+    /// region. Default 150.
+    pub members: usize,
+    /// Links into the core that a landmark of the halo must have, `>= 1`. Default 3: fewer leave it
+    /// a choice of two places.
+    pub halo_links: usize,
+}
+
+impl Default for RegionParams {
+    fn default() -> Self {
+        Self { core: 12, members: 150, halo_links: 3 }
+    }
+}
+
+/// When an iteration stops.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct StopParams {
+    /// Most steps, `>= 1`.
+    pub max_iterations: usize,
+    /// Converged when a step lowers the stress by less than this share, `> 0`.
+    pub tolerance: f64,
+}
+
+impl StopParams {
+    pub(crate) fn rule(self) -> StopRule {
+        StopRule { max_iterations: self.max_iterations, tolerance: self.tolerance }
+    }
+}
+
+/// Settings of `auto`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
+pub struct AutoParams {
+    /// Sizes of the regions.
+    pub regions: RegionParams,
+    /// When a local map is done. Default 100 steps or a gain of 1e-5: it is a start, not a result.
+    pub local_stop: StopParams,
+    /// When the polish is done. Default 60 steps or a gain of 1e-7.
+    pub polish_stop: StopParams,
+}
+
+impl Default for AutoParams {
+    fn default() -> Self {
+        Self {
+            regions: RegionParams::default(),
+            local_stop: StopParams { max_iterations: 100, tolerance: 1e-5 },
+            polish_stop: StopParams { max_iterations: 60, tolerance: 1e-7 },
+        }
+    }
+}
+
+impl AutoParams {
+    pub(crate) fn check(&self) -> Result<(), MapError> {
+        let bad = |name, value: f64, wanted| Err(MapError::BadParameter { name, value, wanted });
+        if self.regions.core < 4 {
+            return bad("auto.regions.core", self.regions.core as f64, "at least 4");
+        }
+        if self.regions.members <= self.regions.core {
+            return bad("auto.regions.members", self.regions.members as f64, "more than auto.regions.core");
+        }
+        if self.regions.halo_links == 0 {
+            return bad("auto.regions.halo_links", 0.0, "at least 1");
+        }
+        for (name, stop) in [("auto.local_stop", self.local_stop), ("auto.polish_stop", self.polish_stop)] {
+            if stop.max_iterations == 0 {
+                return bad(name, 0.0, "at least 1 step");
+            }
+            if !(stop.tolerance > 0.0 && stop.tolerance.is_finite()) {
+                return bad(name, stop.tolerance, "a positive tolerance");
+            }
+        }
+        Ok(())
+    }
+}
+
 /// All settings of a build.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -56,6 +145,8 @@ pub struct MapperParams {
     pub method: Method,
     /// Seed of every random choice. Default 0.
     pub seed: u64,
+    /// Settings of `auto`; `classical` does not read them.
+    pub auto: AutoParams,
     /// Settings of `classical`; `auto` does not read them.
     pub classical: ClassicalParams,
 }

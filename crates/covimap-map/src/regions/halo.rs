@@ -6,14 +6,14 @@
 
 use rayon::prelude::*;
 
-use super::{Region, RegionSizes};
-use crate::LinkGraph;
+use super::Region;
+use crate::{LinkGraph, RegionParams};
 
-pub(super) fn add(graph: &LinkGraph, cores: Vec<Vec<u32>>, sizes: RegionSizes) -> Vec<Region> {
+pub(super) fn add(graph: &LinkGraph, cores: Vec<Vec<u32>>, sizes: RegionParams) -> Vec<Region> {
     cores.into_par_iter().map(|core| region_around(graph, core, sizes)).collect()
 }
 
-fn region_around(graph: &LinkGraph, core: Vec<u32>, sizes: RegionSizes) -> Region {
+fn region_around(graph: &LinkGraph, core: Vec<u32>, sizes: RegionParams) -> Region {
     let mut outside: Vec<(u32, f64)> = core
         .iter()
         .flat_map(|&landmark| graph.of(landmark))

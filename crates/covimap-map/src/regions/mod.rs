@@ -7,18 +7,7 @@
 mod cores;
 mod halo;
 
-use crate::LinkGraph;
-
-/// Sizes of the regions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct RegionSizes {
-    /// Landmarks that a core should have; cores have up to twice as many.
-    pub core: usize,
-    /// Most landmarks of a region, halo included.
-    pub members: usize,
-    /// Links into the core that a landmark of the halo has at least, where the region allows.
-    pub halo_links: usize,
-}
+use crate::{LinkGraph, RegionParams};
 
 /// One region of a cover.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,7 +27,7 @@ pub struct RegionCover {
 
 impl RegionCover {
     /// Covers a connected graph. A graph of at most `sizes.members` landmarks is one region.
-    pub(crate) fn new(graph: &LinkGraph, sizes: RegionSizes) -> Self {
+    pub(crate) fn new(graph: &LinkGraph, sizes: RegionParams) -> Self {
         let n = graph.landmarks();
         let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes.core) };
         let mut cores = vec![Vec::new(); core_of.iter().max().map_or(0, |&last| last as usize + 1)];

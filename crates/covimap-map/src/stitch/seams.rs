@@ -128,7 +128,8 @@ fn cross_misfit(
     let (in_a, in_b) = (&cover.regions()[a as usize].members, &cover.regions()[b as usize].members);
     let mut squares = [0.0; 2];
     let mut links = 0;
-    for (index, landmark) in in_a.iter().enumerate().filter(|(_, landmark)| in_b.binary_search(landmark).is_err())
+    for (index, landmark) in
+        in_a.iter().enumerate().filter(|(_, landmark)| in_b.binary_search(landmark).is_err())
     {
         let here = maps[a as usize].points[index];
         for link in graph.of(*landmark).iter().filter(|link| in_a.binary_search(&link.to).is_err()) {

@@ -1,7 +1,11 @@
 //! What a build says about the map it made. Part of the map file, so it holds nothing that
 //! changes from run to run (times go to the [`crate::Observer`]).
 
+mod warnings;
+
 use serde::{Deserialize, Serialize};
+
+pub(crate) use warnings::warnings;
 
 /// A finding that a reader of the map should know of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,0 +1,122 @@
+//! The map of one connected component, and the frame in which it is handed out.
+
+use covimap_embed::{Embedding, PairDistances, Point, Termination, newton};
+use rayon::prelude::*;
+
+use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
+
+/// A mapped component.
+pub(crate) struct Chart {
+    /// Positions, in the frame of [`put_in_frame`].
+    pub points: Vec<Point>,
+    /// Region of whose core each landmark is.
+    pub region: Vec<u32>,
+    pub regions: usize,
+    pub stress1: f64,
+    pub iterations: usize,
+    pub converged: bool,
+}
+
+/// Maps a connected component: regions, local maps, stitching, polish.
+pub(crate) fn map_component(
+    graph: &LinkGraph,
+    params: &AutoParams,
+    observer: &dyn Observer,
+) -> Result<Chart, MapError> {
+    let stage = |stage, total| {
+        observer.started(stage, total);
+        if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+    };
+    stage(Stage::Regions, None)?;
+    let cover = RegionCover::new(graph, params.regions);
+    observer.finished(Stage::Regions);
+
+    stage(Stage::LocalMaps, Some(cover.regions().len() as u64))?;
+    let maps = cover
+        .regions()
+        .par_iter()
+        .map(|region| {
+            if observer.interrupted() {
+                return Err(MapError::Interrupted);
+            }
+            let map = local_map::solve(graph, region, params.local_stop.rule())?;
+            observer.advanced(1);
+            Ok(map)
+        })
+        .collect::<Result<Vec<_>, MapError>>()?;
+    observer.finished(Stage::LocalMaps);
+
+    stage(Stage::Stitch, None)?;
+    let start = stitch::stitch(graph, &cover, &maps)?;
+    observer.finished(Stage::Stitch);
+
+    stage(Stage::Polish, None)?;
+    let polished = polish(&graph.to_pairs(), &start, params)?;
+    observer.finished(Stage::Polish);
+    Ok(Chart {
+        stress1: polished.stress1,
+        iterations: polished.iterations,
+        converged: polished.termination == Termination::Converged,
+        points: polished.points,
+        region: cover.core_of().to_vec(),
+        regions: cover.regions().len(),
+    })
+}
+
+fn polish(pairs: &PairDistances, start: &[Point], params: &AutoParams) -> Result<Embedding, MapError> {
+    Ok(newton(pairs, start, params.polish_stop.rule())?)
+}
+
+/// Brings the points of a component into the frame that all maps use: the centroid at the origin,
+/// the x axis along the greatest spread, and the first point at `x >= 0` and `y >= 0`.
+///
+/// The last choice includes the handedness, which co-visibility cannot tell.
+pub(crate) fn put_in_frame(points: &mut [Point]) {
+    let n = points.len() as f64;
+    let centre = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / n);
+    for point in points.iter_mut() {
+        *point = [point[0] - centre[0], point[1] - centre[1]];
+    }
+    // The direction of greatest spread is half the angle of the sum of (x + iy)^2.
+    let real: f64 = points.iter().map(|[x, y]| x * x - y * y).sum();
+    let imaginary: f64 = points.iter().map(|[x, y]| 2.0 * x * y).sum();
+    let (sin, cos) = (0.5 * imaginary.atan2(real)).sin_cos();
+    for point in points.iter_mut() {
+        *point = [cos * point[0] + sin * point[1], cos * point[1] - sin * point[0]];
+    }
+    let signs = points.first().map_or([1.0; 2], |first| first.map(|c| if c < 0.0 { -1.0 } else { 1.0 }));
+    for point in points {
+        // Adding zero turns a negative zero into a positive one.
+        *point = [signs[0] * point[0] + 0.0, signs[1] * point[1] + 0.0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_does_not_depend_on_where_the_map_was() {
+        let shape = [[2.0, 1.0], [0.0, 0.0], [5.0, 0.5], [1.0, -1.0]];
+        let mut wanted = shape;
+        put_in_frame(&mut wanted);
+        assert!(wanted[0][0] >= 0.0 && wanted[0][1] >= 0.0);
+        let (sin, cos) = 0.7f64.sin_cos();
+        for mirror in [1.0, -1.0] {
+            let mut moved =
+                shape.map(|[x, y]| [cos * x - sin * mirror * y + 3.0, sin * x + cos * mirror * y - 8.0]);
+            put_in_frame(&mut moved);
+            for (a, b) in moved.iter().zip(&wanted) {
+                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12, "{moved:?} {wanted:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_frame_of_one_point_and_of_none() {
+        let mut one = [[4.0, -2.0]];
+        put_in_frame(&mut one);
+        assert_eq!(one, [[0.0, 0.0]]);
+        put_in_frame(&mut []);
+    }
+}

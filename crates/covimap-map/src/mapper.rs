@@ -1,0 +1,185 @@
+//! The pipeline: a log in, a [`GlobalMap`] out.
+
+use covimap_embed::{PairDistances, Point, stress1};
+
+use crate::chart::{Chart, map_component, put_in_frame};
+use crate::classical;
+use crate::report::warnings;
+use crate::{
+    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
+    MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
+};
+
+/// Builds maps with one set of checked parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mapper {
+    params: MapperParams,
+}
+
+impl Mapper {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`MapError::BadParameter`] for the first one out of its range.
+    pub fn new(params: MapperParams) -> Result<Self, MapError> {
+        params.classical.check()?;
+        params.auto.check()?;
+        Ok(Self { params })
+    }
+
+    /// Maps a log. The same log and parameters give the same map for any number of threads.
+    ///
+    /// # Errors
+    /// [`MapError::NothingTogether`] if no step shows two landmarks; [`MapError::NoInformation`] if
+    /// all landmarks are always seen together; [`MapError::TooLargeForClassical`];
+    /// [`MapError::Interrupted`] if the observer asks for it.
+    pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
+        observer.started(Stage::Count, Some(log.names().len() as u64));
+        let counts = CoVisibility::count(log, observer)?;
+        check_information(&counts)?;
+        let graph = LinkGraph::from_counts(&counts);
+        observer.finished(Stage::Count);
+
+        let components = graph.components();
+        let charts = components
+            .iter()
+            .map(|members| match self.params.method {
+                Method::Auto => self.auto_chart(&graph, members, observer),
+                Method::Classical => {
+                    classical_chart(&counts, &graph, members, &self.params.classical, observer)
+                }
+            })
+            .collect::<Result<Vec<Chart>, MapError>>()?;
+        let report = report(&counts, &graph, &components, &charts, log);
+        let landmarks = place(&counts, &graph, &components, &charts);
+        GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
+    }
+
+    fn auto_chart(
+        &self,
+        graph: &LinkGraph,
+        members: &[u32],
+        observer: &dyn Observer,
+    ) -> Result<Chart, MapError> {
+        let mut chart = if members.len() == graph.landmarks() {
+            map_component(graph, &self.params.auto, observer)?
+        } else {
+            map_component(&graph.restricted_to(members), &self.params.auto, observer)?
+        };
+        put_in_frame(&mut chart.points);
+        Ok(chart)
+    }
+}
+
+fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
+    if counts.pair_count() == 0 {
+        return Err(MapError::NothingTogether { steps: counts.steps(), landmarks: counts.landmarks() });
+    }
+    let n = counts.landmarks();
+    let complete = counts.pair_count() == n * (n - 1) / 2;
+    let same = |i: usize| {
+        let (_, together) = counts.row(LandmarkId(i as u32));
+        together.iter().all(|&both| both == counts.sightings()[i])
+    };
+    // Two landmarks make a map of one distance, whatever it is.
+    if n > 2 && complete && (0..n).all(same) {
+        return Err(MapError::NoInformation { landmarks: n, steps: counts.sightings()[0] });
+    }
+    Ok(())
+}
+
+fn classical_chart(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    members: &[u32],
+    params: &ClassicalParams,
+    observer: &dyn Observer,
+) -> Result<Chart, MapError> {
+    observer.started(Stage::Classical, None);
+    if observer.interrupted() {
+        return Err(MapError::Interrupted);
+    }
+    let mut points = classical::solve(counts, members, params)?.points;
+    put_in_frame(&mut points);
+    observer.finished(Stage::Classical);
+    let pairs = paper_pairs(counts, graph, members, params);
+    Ok(Chart {
+        stress1: stress1(&pairs, &points),
+        region: vec![0; members.len()],
+        points,
+        regions: 1,
+        iterations: 0,
+        converged: true,
+    })
+}
+
+/// The co-seen pairs with the paper's distances, all of weight 1.
+fn paper_pairs(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    members: &[u32],
+    params: &ClassicalParams,
+) -> PairDistances {
+    graph.restricted_to(members).to_pairs_with(|i, j| {
+        let f = counts.frequency(LandmarkId(members[i as usize]), LandmarkId(members[j as usize]));
+        (params.squared_distance(f).sqrt(), 1.0)
+    })
+}
+
+fn place(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    components: &[Vec<u32>],
+    charts: &[Chart],
+) -> Vec<PlacedLandmark> {
+    let nowhere = PlacedLandmark { position: [0.0; 2], component: 0, region: 0, sightings: 0, partners: 0 };
+    let mut landmarks = vec![nowhere; graph.landmarks()];
+    let mut first_region = 0;
+    for (component, (members, chart)) in components.iter().zip(charts).enumerate() {
+        for (place, &landmark) in members.iter().enumerate() {
+            let position: Point = chart.points[place];
+            landmarks[landmark as usize] = PlacedLandmark {
+                position,
+                component: component as u32,
+                region: first_region + chart.region[place],
+                sightings: counts.sightings()[landmark as usize],
+                partners: graph.of(landmark).len() as u32,
+            };
+        }
+        first_region += chart.regions as u32;
+    }
+    landmarks
+}
+
+fn report(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    components: &[Vec<u32>],
+    charts: &[Chart],
+    log: &SightingLog,
+) -> BuildReport {
+    let components: Vec<ComponentReport> = components
+        .iter()
+        .zip(charts)
+        .map(|(members, chart)| ComponentReport {
+            landmarks: members.len() as u64,
+            regions: chart.regions as u64,
+            pairs: members.iter().map(|&member| graph.of(member).len() as u64).sum::<u64>() / 2,
+            stress1: chart.stress1,
+            iterations: chart.iterations as u64,
+            converged: chart.converged,
+        })
+        .collect();
+    let pairs: u64 = components.iter().map(|component| component.pairs).sum();
+    let squares: f64 = components.iter().map(|c| c.stress1 * c.stress1 * c.pairs as f64).sum();
+    BuildReport {
+        steps: counts.steps(),
+        sightings: counts.sightings().iter().map(|&n| u64::from(n)).sum(),
+        landmarks: counts.landmarks() as u64,
+        pairs,
+        regions: components.iter().map(|component| component.regions).sum(),
+        stress1: (squares / pairs.max(1) as f64).sqrt(),
+        warnings: warnings(counts, graph, &components, log.names()),
+        components,
+    }
+}

@@ -1,0 +1,104 @@
+//! Findings in counts and graph that a reader of the map should know of.
+
+use super::{ComponentReport, Warning};
+use crate::{CoVisibility, LandmarkId, LandmarkNames, LinkGraph};
+
+/// IDs named in a warning; the rest is only counted.
+const EXAMPLES: usize = 10;
+
+/// All warnings of a build, in a fixed order.
+pub(crate) fn warnings(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    components: &[ComponentReport],
+    names: &LandmarkNames,
+) -> Vec<Warning> {
+    let landmarks = || (0..graph.landmarks() as u32).map(LandmarkId);
+    let warn = |kind: &str, found: &mut dyn Iterator<Item = LandmarkId>, message: &str| {
+        let mut examples = Vec::new();
+        let mut count = 0;
+        for landmark in found {
+            count += 1;
+            if examples.len() < EXAMPLES {
+                examples.push(names.name(landmark).to_owned());
+            }
+        }
+        (count > 0).then(|| Warning { kind: kind.to_owned(), count, examples, message: message.to_owned() })
+    };
+    let alone = |id: LandmarkId| graph.of(id.0).is_empty();
+    let loose = |id: LandmarkId| (1..3).contains(&graph.of(id.0).len());
+    let twin = |id: LandmarkId| {
+        let (partners, together) = counts.row(id);
+        let own = counts.sightings()[id.index()];
+        own > 1
+            && partners
+                .iter()
+                .zip(together)
+                .any(|(&other, &both)| both == own && counts.sightings()[other as usize] == own)
+    };
+    let mut warnings: Vec<Warning> = [
+        warn(
+            "seen_once",
+            &mut landmarks().filter(|id| counts.sightings()[id.index()] == 1),
+            "seen in a single step; their places are guesses until they are seen again",
+        ),
+        warn(
+            "never_together",
+            &mut landmarks().filter(|&id| alone(id)),
+            "never seen together with another landmark; each is a component of its own and has no place \
+             relative to the others",
+        ),
+        warn(
+            "few_partners",
+            &mut landmarks().filter(|&id| loose(id) && graph.landmarks() > 3),
+            "seen together with fewer than three others, which leaves a choice of places; look for steps that \
+             show them with more",
+        ),
+        warn(
+            "twins",
+            &mut landmarks().filter(|&id| twin(id)),
+            "always seen together with the same other landmark and never without it, so the two cannot be told \
+             apart",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    warnings.extend(component_warnings(components));
+    warnings
+}
+
+fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Warning> {
+    let warn = |kind: &str, count: usize, message: String| {
+        (count > 0).then(|| Warning {
+            kind: kind.to_owned(),
+            count: count as u64,
+            examples: Vec::new(),
+            message,
+        })
+    };
+    let several = components.len() > 1;
+    let unfinished = components.iter().filter(|component| !component.converged).count();
+    let tiny = components.len() == 1 && components[0].landmarks <= 3;
+    [
+        warn(
+            "components",
+            if several { components.len() } else { 0 },
+            "parts of the log have no sighting in common; each is a chart of its own, and nothing tells how they \
+             lie to each other"
+                .to_owned(),
+        ),
+        warn(
+            "not_converged",
+            unfinished,
+            "components whose last steps still lowered the stress; raise auto.polish_stop.max_iterations".to_owned(),
+        ),
+        warn(
+            "too_few_landmarks",
+            usize::from(tiny),
+            "with three landmarks or fewer any set of distances fits, so the map cannot be checked".to_owned(),
+        ),
+    ]
+    .into_iter()
+    .flatten()
+}

@@ -1,0 +1,3 @@
+//! Tests of the whole: logs in, maps out.
+
+mod golden;
