@@ -81,8 +81,14 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::UnknownFormat { .. }
             | MapError::NoSteps { .. }
             | MapError::MapFormat { .. }
-            | MapError::InvalidMap { .. },
+            | MapError::InvalidMap { .. }
+            | MapError::NothingTogether { .. }
+            | MapError::NoInformation { .. }
+            | MapError::TooLargeForClassical { .. }
+            | MapError::NoCommonLandmarks { .. }
+            | MapError::TooFewCommon { .. },
         ) => BAD_INPUT,
+        Some(MapError::BadParameter { .. }) => USAGE,
         _ => FAILURE,
     }
 }

@@ -1,6 +1,7 @@
 //! How a build goes on: bars on a terminal, a plain line now and then elsewhere.
 
-use std::io::{self, IsTerminal, Write};
+use std::collections::BTreeMap;
+use std::io::{self, IsTerminal};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -8,90 +9,78 @@ use std::time::{Duration, Instant};
 use covimap_map::{Observer, Stage};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::console::Console;
+use crate::console::{Console, complain};
 use crate::interrupt::{self, Deferral};
 
-/// Between two plain lines about the same stage; short enough for watchdogs that end silent jobs.
+/// Between two plain lines; short enough for watchdogs that end silent jobs.
 const PLAIN_EVERY: Duration = Duration::from_secs(10);
-/// Between two turns of the spinner.
-const SPIN_EVERY: Duration = Duration::from_millis(120);
+/// Between two pictures of the bar.
+const DRAW_EVERY: Duration = Duration::from_millis(100);
 
 /// Watches a build for the person who started it, and stops it on Ctrl-C.
 pub struct Progress {
-    bars: bool,
     state: Arc<Mutex<State>>,
-    plain: Option<PlainLines>,
+    ticker: Option<Ticker>,
     _deferral: Deferral,
 }
 
 #[derive(Default)]
 struct State {
     running: Option<Running>,
-    times: Vec<(Stage, Duration)>,
+    /// Time in all runs of a stage: one run a component of the log.
+    times: BTreeMap<Stage, Duration>,
 }
 
+#[derive(Debug, Clone, Copy)]
 struct Running {
     stage: Stage,
     total: Option<u64>,
     done: u64,
     since: Instant,
-    bar: ProgressBar,
 }
 
 impl Progress {
-    /// Bars if standard error is a terminal, else plain lines; nothing if the console is quiet.
+    /// A bar if standard error is a terminal, else plain lines; nothing if the console is quiet.
     pub fn new(console: Console) -> Self {
-        let terminal = io::stderr().is_terminal();
         let state = Arc::<Mutex<State>>::default();
-        let plain = (!console.quiet && !terminal)
-            .then(|| PlainLines::start(state.clone(), PLAIN_EVERY, io::stderr()));
-        Self { bars: !console.quiet && terminal, state, plain, _deferral: Deferral::new() }
+        let seen = state.clone();
+        let running = move || lock(&seen).running;
+        let ticker = match (console.quiet, io::stderr().is_terminal()) {
+            (true, _) => None,
+            (false, true) => {
+                let mut bar = Bar::new();
+                Some(Ticker::start(DRAW_EVERY, move || bar.draw(running())))
+            }
+            (false, false) => {
+                let say = move |running: Running| complain(line(&running));
+                Some(Ticker::start(PLAIN_EVERY, move || running().into_iter().for_each(say)))
+            }
+        };
+        Self { state, ticker, _deferral: Deferral::new() }
     }
 
     /// Ends the display and returns the time that each stage took, in order.
     pub fn end(self) -> Vec<(Stage, Duration)> {
-        drop(self.plain);
-        std::mem::take(&mut lock(&self.state).times)
-    }
-
-    fn bar(&self, stage: Stage, total: Option<u64>) -> ProgressBar {
-        if !self.bars {
-            return ProgressBar::hidden();
-        }
-        let (bar, template) = match total {
-            Some(total) if stage == Stage::Read => {
-                (ProgressBar::new(total), "{msg:<12} {bar:32} {bytes}/{total_bytes}, {eta} left")
-            }
-            Some(total) => {
-                (ProgressBar::new(total), "{msg:<12} {bar:32} {human_pos}/{human_len}, {eta} left")
-            }
-            None => (ProgressBar::new_spinner(), "{msg:<12} {spinner} {elapsed}"),
-        };
-        bar.set_style(ProgressStyle::with_template(template).expect("templates are valid (bug in covimap)"));
-        bar.set_message(name(stage));
-        bar.enable_steady_tick(SPIN_EVERY);
-        bar
+        drop(self.ticker);
+        std::mem::take(&mut lock(&self.state).times).into_iter().collect()
     }
 }
 
 impl Observer for Progress {
     fn started(&self, stage: Stage, total: Option<u64>) {
-        let bar = self.bar(stage, total);
-        lock(&self.state).running = Some(Running { stage, total, done: 0, since: Instant::now(), bar });
+        lock(&self.state).running = Some(Running { stage, total, done: 0, since: Instant::now() });
     }
 
     fn advanced(&self, amount: u64) {
         if let Some(running) = &mut lock(&self.state).running {
             running.done += amount;
-            running.bar.set_position(running.done);
         }
     }
 
     fn finished(&self, stage: Stage) {
         let mut state = lock(&self.state);
         if let Some(running) = state.running.take() {
-            running.bar.finish_and_clear();
-            state.times.push((stage, running.since.elapsed()));
+            *state.times.entry(stage).or_default() += running.since.elapsed();
         }
     }
 
@@ -100,56 +89,88 @@ impl Observer for Progress {
     }
 }
 
-impl Drop for Running {
-    /// A stage that an error ended leaves no bar behind.
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// A thread that says now and then what goes on, until it is dropped.
-struct PlainLines {
+/// Calls a function now and then in a thread of its own, until it is dropped.
+struct Ticker {
     ended: Arc<(Mutex<bool>, Condvar)>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl PlainLines {
-    fn start(state: Arc<Mutex<State>>, every: Duration, mut to: impl Write + Send + 'static) -> Self {
+impl Ticker {
+    fn start(every: Duration, mut tick: impl FnMut() + Send + 'static) -> Self {
         let ended = Arc::<(Mutex<bool>, Condvar)>::default();
         let watched = ended.clone();
         let thread = thread::spawn(move || {
-            let (end, changed) = &*watched;
-            let mut end = lock(end);
-            while !*end {
-                end = changed.wait_timeout(end, every).expect("no panic under this lock (bug in covimap)").0;
-                let line = lock(&state)
-                    .running
-                    .as_ref()
-                    .filter(|running| running.since.elapsed() >= every)
-                    .map(line);
-                if let (false, Some(line)) = (*end, line) {
-                    let _ = writeln!(to, "{line}");
+            let (ended, changed) = &*watched;
+            let mut end = lock(ended);
+            loop {
+                end = changed.wait_timeout(end, every).expect(NO_PANIC).0;
+                if *end {
+                    return;
                 }
+                tick();
             }
         });
         Self { ended, thread: Some(thread) }
     }
 }
 
-impl Drop for PlainLines {
+impl Drop for Ticker {
     fn drop(&mut self) {
         *lock(&self.ended.0) = true;
         self.ended.1.notify_all();
         if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+            thread.join().expect(NO_PANIC);
         }
     }
 }
 
+/// The bar on the terminal; leaves nothing behind.
+struct Bar {
+    bar: ProgressBar,
+    shown: Option<Stage>,
+}
+
+impl Bar {
+    fn new() -> Self {
+        Self { bar: ProgressBar::new(0), shown: None }
+    }
+
+    fn draw(&mut self, running: Option<Running>) {
+        let Some(Running { stage, total, done, .. }) = running else { return };
+        if self.shown.replace(stage) != Some(stage) {
+            self.bar.reset();
+            self.bar.set_message(name(stage));
+            self.bar.set_style(style(stage, total));
+        }
+        self.bar.set_length(total.unwrap_or(0));
+        self.bar.set_position(done);
+        self.bar.tick();
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn style(stage: Stage, total: Option<u64>) -> ProgressStyle {
+    let template = match (stage, total) {
+        (Stage::Read, Some(_)) => "{msg:<10} {bar:32} {bytes} of {total_bytes}, {eta} left",
+        (Stage::Read, None) => "{msg:<10} {spinner} {bytes}, {elapsed}",
+        (_, Some(_)) => "{msg:<10} {bar:32} {human_pos} of {human_len}, {eta} left",
+        (_, None) => "{msg:<10} {spinner} {elapsed}",
+    };
+    ProgressStyle::with_template(template).expect("templates are valid (bug in covimap)")
+}
+
+/// What is going on, as a line of text.
 fn line(running: &Running) -> String {
-    let (name, done, seconds) = (name(running.stage), running.done, running.since.elapsed().as_secs());
+    let (name, unit, done) = (name(running.stage), unit(running.stage), running.done);
+    let seconds = running.since.elapsed().as_secs();
     match running.total {
-        Some(total) => format!("covimap: {name}: {done} of {total} {}, {seconds} s", unit(running.stage)),
+        Some(total) => format!("covimap: {name}: {done} of {total} {unit}, {seconds} s"),
+        None if done > 0 => format!("covimap: {name}: {done} {unit}, {seconds} s"),
         None => format!("covimap: {name}: {seconds} s"),
     }
 }
@@ -176,55 +197,51 @@ fn unit(stage: Stage) -> &'static str {
     }
 }
 
+const NO_PANIC: &str = "nothing panics while progress is shown (bug in covimap)";
+
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().expect("no panic under this lock (bug in covimap)")
+    mutex.lock().expect(NO_PANIC)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::mpsc;
+
     use super::*;
 
-    fn running(total: Option<u64>) -> Running {
-        Running {
-            stage: Stage::LocalMaps,
-            total,
-            done: 312,
-            since: Instant::now(),
-            bar: ProgressBar::hidden(),
-        }
+    fn running(total: Option<u64>, done: u64) -> Running {
+        Running { stage: Stage::LocalMaps, total, done, since: Instant::now() }
     }
 
     #[test]
     fn a_line_says_what_is_done_of_how_much() {
-        assert_eq!(line(&running(Some(900))), "covimap: local maps: 312 of 900 regions, 0 s");
-        assert_eq!(line(&running(None)), "covimap: local maps: 0 s");
+        assert_eq!(line(&running(Some(900), 312)), "covimap: local maps: 312 of 900 regions, 0 s");
+        assert_eq!(line(&running(None, 312)), "covimap: local maps: 312 regions, 0 s");
+        assert_eq!(line(&running(None, 0)), "covimap: local maps: 0 s");
     }
 
     #[test]
-    fn stages_are_timed_in_order_and_work_outside_of_one_is_ignored() {
+    fn stages_are_timed_once_each_and_work_outside_of_one_is_ignored() {
         let progress = Progress::new(Console { quiet: true });
         progress.advanced(1);
-        for stage in [Stage::Read, Stage::Count] {
+        for stage in [Stage::Polish, Stage::Count, Stage::Polish] {
             progress.started(stage, Some(10));
             progress.advanced(4);
-            assert_eq!(lock(&progress.state).running.as_ref().map(|running| running.done), Some(4));
+            assert_eq!(lock(&progress.state).running.map(|running| running.done), Some(4));
             progress.finished(stage);
         }
         let stages: Vec<_> = progress.end().into_iter().map(|(stage, _)| stage).collect();
-        assert_eq!(stages, [Stage::Read, Stage::Count]);
+        assert_eq!(stages, [Stage::Count, Stage::Polish]);
     }
 
     #[test]
-    fn a_long_stage_is_spoken_of_and_silence_follows_its_end() {
-        let state = Arc::new(Mutex::new(State { running: Some(running(None)), times: Vec::new() }));
-        let (said, heard) = io::pipe().unwrap();
-        let lines = PlainLines::start(state, Duration::from_millis(1), said);
-        let mut heard = io::BufReader::new(heard);
-        let mut first = String::new();
-        io::BufRead::read_line(&mut heard, &mut first).unwrap();
-        assert_eq!(first, "covimap: local maps: 0 s\n");
-        drop(lines);
-        // The writing end closes with the thread: were it still alive, this would not return.
-        io::Read::read_to_string(&mut heard, &mut String::new()).unwrap();
+    fn a_ticker_ticks_until_it_is_dropped() {
+        let (ticks, heard) = mpsc::channel();
+        let ticker = Ticker::start(Duration::from_millis(1), move || ticks.send(()).unwrap());
+        heard.recv().unwrap();
+        heard.recv().unwrap();
+        drop(ticker);
+        // The sending end is gone with the thread, so this comes to an end.
+        heard.iter().for_each(drop);
     }
 }

@@ -113,9 +113,6 @@ pub enum MapError {
         /// Fewest that a component needs.
         fewest: usize,
     },
-    /// A fit or an embedding that the numbers do not allow.
-    #[error(transparent)]
-    Embed(#[from] EmbedError),
     /// A setting is out of its range.
     #[error("setting {name} is {value}; give {wanted}")]
     BadParameter {
