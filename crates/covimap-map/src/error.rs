@@ -158,4 +158,29 @@ pub enum MapError {
     /// The scaling engine gave up.
     #[error("scaling failed: {0}")]
     Embed(#[from] covimap_embed::EmbedError),
+    /// A map and a truth without a landmark in common.
+    #[error(
+        "no landmark of the map is in the truth: the map has {} such as {:?}, the truth {} such as {:?}; give both \
+         the same IDs", map.0, map.1, truth.0, truth.1
+    )]
+    NoCommonLandmarks {
+        /// Landmarks of the map, and the first ID.
+        map: (usize, String),
+        /// Landmarks of the truth, and the first ID.
+        truth: (usize, String),
+    },
+    /// Too few landmarks in common for any measure.
+    #[error(
+        "map and truth share {common} landmarks, but no component of the map has {fewest} of them; survey more \
+         landmarks of one component"
+    )]
+    TooFewCommon {
+        /// Landmarks in both.
+        common: usize,
+        /// Fewest that a component needs.
+        fewest: usize,
+    },
+    /// A fit or an embedding that the numbers do not allow.
+    #[error(transparent)]
+    Embed(#[from] EmbedError),
 }
