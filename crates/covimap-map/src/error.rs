@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use covimap_embed::{EmbedError, Point};
+use covimap_embed::Point;
 
 /// Why a log could not be read or a map not be built, read or written.
 #[derive(Debug, thiserror::Error)]
@@ -91,28 +91,6 @@ pub enum MapError {
     /// The caller's [`crate::Observer`] asked to stop.
     #[error("interrupted; nothing was written")]
     Interrupted,
-    /// A map and a truth without a landmark in common.
-    #[error(
-        "no landmark of the map is in the truth: the map has {} such as {:?}, the truth {} such as {:?}; give both \
-         the same IDs", map.0, map.1, truth.0, truth.1
-    )]
-    NoCommonLandmarks {
-        /// Landmarks of the map, and the first ID.
-        map: (usize, String),
-        /// Landmarks of the truth, and the first ID.
-        truth: (usize, String),
-    },
-    /// Too few landmarks in common for any measure.
-    #[error(
-        "map and truth share {common} landmarks, but no component of the map has {fewest} of them; survey more \
-         landmarks of one component"
-    )]
-    TooFewCommon {
-        /// Landmarks in both.
-        common: usize,
-        /// Fewest that a component needs.
-        fewest: usize,
-    },
     /// A setting is out of its range.
     #[error("setting {name} is {value}; give {wanted}")]
     BadParameter {
@@ -180,7 +158,4 @@ pub enum MapError {
         /// Fewest that a component needs.
         fewest: usize,
     },
-    /// A fit or an embedding that the numbers do not allow.
-    #[error(transparent)]
-    Embed(#[from] EmbedError),
 }
