@@ -63,7 +63,11 @@ fn message(error: &anyhow::Error) -> String {
         Some(MapError::BadLine { .. }) => error.to_string(),
         _ => format!("covimap: {error}"),
     };
-    error.chain().skip(1).fold(text, |text, cause| format!("{text}\n  cause: {cause}"))
+    let causes = error.chain().skip(1).map(ToString::to_string);
+    causes.fold(
+        text,
+        |text, cause| if text.contains(&cause) { text } else { format!("{text}\n  cause: {cause}") },
+    )
 }
 
 fn code(error: &anyhow::Error) -> u8 {

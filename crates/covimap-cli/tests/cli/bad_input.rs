@@ -31,7 +31,7 @@ fn mapped(contents: &str) -> Run {
 #[test]
 fn an_empty_file() {
     refused("log.jsonl", "", "covimap: log.jsonl: no step in the log; a step is a line like");
-    refused("log.csv", "", "log.csv:1: ");
+    refused("log.csv", "", "covimap: log.csv: no step in the log");
     refused("log", "\n\n", "no step in the log");
 }
 
@@ -40,7 +40,7 @@ fn no_step_with_two_landmarks() {
     refused(
         "log.txt",
         "A\nB\n\nA\n",
-        "covimap: no step shows two landmarks - 2 landmarks in 3 steps; pool several sightings",
+        "covimap: no step shows two landmarks - 2 landmarks in 4 steps; pool several sightings",
     );
 }
 
@@ -68,7 +68,11 @@ fn text_that_is_not_utf8() {
     for (name, line) in [("log.txt", &b"A B\xff\n"[..]), ("log.jsonl", b"{\"seen\": [\"\xc3\x28\"]}\n")] {
         refused(name, line, &format!("{name}:1: byte "));
     }
-    refused("log.csv", b"step,landmark\n1,A\n1,\xff\n", "log.csv:3: byte 3 of the line (0xFF) is not valid UTF-8");
+    refused(
+        "log.csv",
+        b"step,landmark\n1,A\n1,\xff\n",
+        "log.csv:3: byte 3 of the line (0xFF) is not valid UTF-8",
+    );
 }
 
 #[test]
@@ -99,7 +103,11 @@ fn a_gzip_file_that_is_cut_short() {
 fn a_folder_or_nothing_in_the_place_of_a_log() {
     let scratch = Scratch::new();
     std::fs::create_dir(scratch.path().join("logs")).unwrap();
-    scratch.refuses(&["build", "logs"], BAD_INPUT, "covimap: logs: is a directory; name the log file inside it");
+    scratch.refuses(
+        &["build", "logs"],
+        BAD_INPUT,
+        "covimap: logs: is a directory; name the log file inside it",
+    );
     let missing = "covimap: no.jsonl: cannot be opened; check its name and rights\n  cause: No such file";
     scratch.refuses(&["build", "no.jsonl"], BAD_INPUT, missing);
     scratch.refuses(&["check", "no.jsonl"], BAD_INPUT, missing);
@@ -145,7 +153,11 @@ fn parts_that_have_nothing_in_common() {
 #[test]
 fn an_id_of_10_kilobytes() {
     let id = "x".repeat(10_000);
-    refused("log.txt", format!("A B\nA {id}\n"), "log.txt:2: the ID `xxxxxxxxxxxxxxxxxxxx...` has 10000 bytes");
+    refused(
+        "log.txt",
+        format!("A B\nA {id}\n"),
+        "log.txt:2: the ID `xxxxxxxxxxxxxxxxxxxx...` has 10000 bytes",
+    );
 }
 
 #[test]
@@ -165,7 +177,11 @@ fn a_truth_with_nan() {
     scratch.file("truth.csv", "id,x,y\nA,0,0\nB,NaN,0\nC,1,1\n");
     let message = "truth.csv:3: x is NaN, positions must be finite; leave the row out\n";
     scratch.refuses(&["evaluate", "square.map.json", "truth.csv"], BAD_INPUT, message);
-    scratch.refuses(&["export", "square.map.json", "--to", "svg", "--truth", "truth.csv"], BAD_INPUT, message);
+    scratch.refuses(
+        &["export", "square.map.json", "--to", "svg", "--truth", "truth.csv"],
+        BAD_INPUT,
+        message,
+    );
 }
 
 #[test]
@@ -189,6 +205,7 @@ fn a_log_too_large_for_the_dense_method() {
     let steps: String = (0..3001).map(|k| format!("L{k} L{}\n", k + 1)).collect();
     let scratch = Scratch::new();
     scratch.file("log.txt", steps);
-    let message = "the classical method is dense and takes at most 3000 landmarks, here are 3002; use --method auto";
+    let message =
+        "the classical method is dense and takes at most 3000 landmarks, here are 3002; use --method auto";
     scratch.refuses(&["build", "log.txt", "--method", "classical"], BAD_INPUT, message);
 }

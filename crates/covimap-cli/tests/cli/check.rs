@@ -10,7 +10,8 @@ fn a_good_log_is_counted() {
     assert_eq!(run.stderr, "");
     for line in [
         "lines                     4\n",
-        "steps                     3\n",
+        "steps                     4\n",
+        "  with nothing seen       1\n",
         "  with one landmark       1\n",
         "  with two or more        2\n",
         "most landmarks in a step  3\n",
@@ -27,7 +28,8 @@ fn a_good_log_is_counted() {
 #[test]
 fn all_bad_lines_are_counted_and_the_first_ones_listed() {
     let scratch = Scratch::new();
-    scratch.file("log.jsonl", "{\"seen\": [\"A\", \"B\"]}\n{\"seen\": 1}\n[]\n{\"seen\": [\"B\", \"C\"]}\n{\n");
+    scratch
+        .file("log.jsonl", "{\"seen\": [\"A\", \"B\"]}\n{\"seen\": 1}\n[]\n{\"seen\": [\"B\", \"C\"]}\n{\n");
     let run = scratch.run(&["check", "log.jsonl", "--list", "2"]);
     assert_eq!(run.code, Some(3));
     let said: Vec<_> = run.stderr.lines().collect();

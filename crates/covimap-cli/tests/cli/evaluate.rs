@@ -13,8 +13,8 @@ fn surveyed() -> Scratch {
 fn the_errors_of_a_map_are_printed_for_people() {
     let run = surveyed().succeeds(&["evaluate", "square.map.json", "truth.csv"]);
     assert_eq!(run.stderr, "left out: 1 landmark of the truth not in the map\n");
-    assert!(run.stdout.contains("landmarks compared                              4\n"), "{}", run.stdout);
-    assert!(run.stdout.contains("triangles turned the wrong way             0.0000\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("landmarks compared                               4\n"), "{}", run.stdout);
+    assert!(run.stdout.contains("triangles turned the wrong way              0.0000\n"), "{}", run.stdout);
 }
 
 #[test]

@@ -12,7 +12,10 @@ fn a_place_that_takes_no_file_is_found_before_the_work() {
     let scratch = Scratch::with_square();
     fs::create_dir(scratch.path().join("folder")).unwrap();
     for (place, message) in [
-        ("no/map.json", "covimap: no/map.json: cannot be written: its folder does not exist; create the folder first"),
+        (
+            "no/map.json",
+            "covimap: no/map.json: cannot be written: its folder does not exist; create the folder first",
+        ),
         ("folder", "covimap: folder: cannot be written: it is a folder; give the name of a file"),
         ("square.jsonl/map.json", "its folder does not exist"),
     ] {

@@ -14,7 +14,10 @@ fn a_log_is_the_same_log_from_stdin_and_packed() {
     packer.write_all(SQUARE.as_bytes()).unwrap();
     scratch.file("gzipped.jsonl.gz", packer.finish().unwrap());
     scratch.file("zipped.jsonl.zst", zstd::encode_all(SQUARE.as_bytes(), 0).unwrap());
-    scratch.file("table.csv", "step,landmark\n1,A\n1,B\n2,B\n2,C\n3,C\n3,D\n4,D\n4,A\n5,A\n5,B\n5,C\n6,C\n6,D\n6,A\n");
+    scratch.file(
+        "table.csv",
+        "step,landmark\n1,A\n1,B\n2,B\n2,C\n3,C\n3,D\n4,D\n4,A\n5,A\n5,B\n5,C\n6,C\n6,D\n6,A\n",
+    );
     for log in ["square.jsonl", "gzipped.jsonl.gz", "zipped.jsonl.zst", "table.csv"] {
         scratch.succeeds(&["build", log, "-q"]);
     }
@@ -25,7 +28,9 @@ fn a_log_is_the_same_log_from_stdin_and_packed() {
     let run = Run::of(scratch.command(&["build", "-", "-q"]).write_stdin(SQUARE));
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(scratch.read("stdin.map.json"), map);
-    let run = Run::of(scratch.command(&["build", "-", "--format", "text", "-o", "-"]).write_stdin("A B\nB C\nC A\n"));
+    let run = Run::of(
+        scratch.command(&["build", "-", "--format", "text", "-o", "-"]).write_stdin("A B\nB C\nC A\n"),
+    );
     assert_eq!(run.json()["landmarks"][2]["id"], "C");
 }
 

@@ -67,7 +67,11 @@ fn settings_out_of_range() {
 #[test]
 fn two_results_for_one_place() {
     let scratch = Scratch::with_square();
-    scratch.refuses(&["build", "square.jsonl", "--json", "-o", "-"], USAGE, "--json and --output - both want stdout");
+    scratch.refuses(
+        &["build", "square.jsonl", "--json", "-o", "-"],
+        USAGE,
+        "--json and --output - both want stdout",
+    );
     let before = scratch.read("square.jsonl");
     scratch.refuses(
         &["build", "square.jsonl", "-o", "./square.jsonl"],
