@@ -94,4 +94,18 @@ pub enum EmbedError {
         /// Number of pairs.
         pairs: usize,
     },
+    /// An edge between two frames is not usable.
+    #[error("edge {index}, from frame {a} to {b} of {nodes}: {what}")]
+    BadRelativeFrame {
+        /// Position in the list.
+        index: usize,
+        /// First node.
+        a: u32,
+        /// Second node.
+        b: u32,
+        /// Number of nodes.
+        nodes: usize,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
 }

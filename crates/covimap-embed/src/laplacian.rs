@@ -209,7 +209,7 @@ pub(crate) fn components(n: usize, edges: impl Iterator<Item = (u32, u32)>) -> (
 }
 
 /// Lower triangle of `V` plus the tie of the last object of each component.
-fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u32]) -> LowerTriangle {
+pub(crate) fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u32]) -> LowerTriangle {
     let mut diagonal = vec![0.0; n];
     let mut starts = vec![0; n + 1];
     for &(i, j, weight) in edges {

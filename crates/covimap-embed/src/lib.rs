@@ -17,6 +17,7 @@ mod similarity;
 mod smacof;
 mod solve;
 mod stress;
+mod synchronise;
 
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use distances::DistanceMatrix;
@@ -30,6 +31,7 @@ pub use similarity::Similarity;
 pub use smacof::smacof;
 pub use solve::{Embedding, StopRule, Termination};
 pub use stress::{raw_stress, stress1};
+pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
 
 /// A position in the plane, `[x, y]`.
 pub type Point = [f64; 2];

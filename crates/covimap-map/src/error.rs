@@ -133,9 +133,6 @@ pub enum MapError {
         /// Most that the method takes.
         limit: usize,
     },
-    /// The scaling engine gave up.
-    #[error("scaling failed: {0}")]
-    Embed(#[from] covimap_embed::EmbedError),
     /// A map and a truth without a landmark in common.
     #[error(
         "no landmark of the map is in the truth: the map has {} such as {:?}, the truth {} such as {:?}; give both \

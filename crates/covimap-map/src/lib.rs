@@ -1,11 +1,12 @@
 //! A log of which landmarks were seen together in, a global map out.
 
-mod chart;
 mod classical;
+mod component;
 mod covisibility;
 mod delaunay;
 mod error;
 pub mod evaluate;
+pub mod export;
 mod global_map;
 mod landmarks;
 mod links;

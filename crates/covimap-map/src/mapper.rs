@@ -2,8 +2,8 @@
 
 use covimap_embed::{PairDistances, Point, stress1};
 
-use crate::chart::{Chart, map_component, put_in_frame};
 use crate::classical;
+use crate::component::{ComponentMap, map_component, put_in_frame};
 use crate::report::warnings;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
@@ -41,33 +41,33 @@ impl Mapper {
         observer.finished(Stage::Count);
 
         let components = graph.components();
-        let charts = components
+        let maps = components
             .iter()
             .map(|members| match self.params.method {
-                Method::Auto => self.auto_chart(&graph, members, observer),
+                Method::Auto => self.auto_component(&graph, members, observer),
                 Method::Classical => {
-                    classical_chart(&counts, &graph, members, &self.params.classical, observer)
+                    classical_component(&counts, &graph, members, &self.params.classical, observer)
                 }
             })
-            .collect::<Result<Vec<Chart>, MapError>>()?;
-        let report = report(&counts, &graph, &components, &charts, log);
-        let landmarks = place(&counts, &graph, &components, &charts);
+            .collect::<Result<Vec<ComponentMap>, MapError>>()?;
+        let report = report(&counts, &graph, &components, &maps, log);
+        let landmarks = place(&counts, &graph, &components, &maps);
         GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
     }
 
-    fn auto_chart(
+    fn auto_component(
         &self,
         graph: &LinkGraph,
         members: &[u32],
         observer: &dyn Observer,
-    ) -> Result<Chart, MapError> {
-        let mut chart = if members.len() == graph.landmarks() {
+    ) -> Result<ComponentMap, MapError> {
+        let mut map = if members.len() == graph.landmarks() {
             map_component(graph, &self.params.auto, observer)?
         } else {
             map_component(&graph.restricted_to(members), &self.params.auto, observer)?
         };
-        put_in_frame(&mut chart.points);
-        Ok(chart)
+        put_in_frame(&mut map.points);
+        Ok(map)
     }
 }
 
@@ -88,13 +88,13 @@ fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
     Ok(())
 }
 
-fn classical_chart(
+fn classical_component(
     counts: &CoVisibility,
     graph: &LinkGraph,
     members: &[u32],
     params: &ClassicalParams,
     observer: &dyn Observer,
-) -> Result<Chart, MapError> {
+) -> Result<ComponentMap, MapError> {
     observer.started(Stage::Classical, None);
     if observer.interrupted() {
         return Err(MapError::Interrupted);
@@ -103,7 +103,7 @@ fn classical_chart(
     put_in_frame(&mut points);
     observer.finished(Stage::Classical);
     let pairs = paper_pairs(counts, graph, members, params);
-    Ok(Chart {
+    Ok(ComponentMap {
         stress1: stress1(&pairs, &points),
         region: vec![0; members.len()],
         points,
@@ -130,23 +130,23 @@ fn place(
     counts: &CoVisibility,
     graph: &LinkGraph,
     components: &[Vec<u32>],
-    charts: &[Chart],
+    maps: &[ComponentMap],
 ) -> Vec<PlacedLandmark> {
     let nowhere = PlacedLandmark { position: [0.0; 2], component: 0, region: 0, sightings: 0, partners: 0 };
     let mut landmarks = vec![nowhere; graph.landmarks()];
     let mut first_region = 0;
-    for (component, (members, chart)) in components.iter().zip(charts).enumerate() {
+    for (component, (members, map)) in components.iter().zip(maps).enumerate() {
         for (place, &landmark) in members.iter().enumerate() {
-            let position: Point = chart.points[place];
+            let position: Point = map.points[place];
             landmarks[landmark as usize] = PlacedLandmark {
                 position,
                 component: component as u32,
-                region: first_region + chart.region[place],
+                region: first_region + map.region[place],
                 sightings: counts.sightings()[landmark as usize],
                 partners: graph.of(landmark).len() as u32,
             };
         }
-        first_region += chart.regions as u32;
+        first_region += map.regions as u32;
     }
     landmarks
 }
@@ -155,19 +155,19 @@ fn report(
     counts: &CoVisibility,
     graph: &LinkGraph,
     components: &[Vec<u32>],
-    charts: &[Chart],
+    maps: &[ComponentMap],
     log: &SightingLog,
 ) -> BuildReport {
     let components: Vec<ComponentReport> = components
         .iter()
-        .zip(charts)
-        .map(|(members, chart)| ComponentReport {
+        .zip(maps)
+        .map(|(members, map)| ComponentReport {
             landmarks: members.len() as u64,
-            regions: chart.regions as u64,
+            regions: map.regions as u64,
             pairs: members.iter().map(|&member| graph.of(member).len() as u64).sum::<u64>() / 2,
-            stress1: chart.stress1,
-            iterations: chart.iterations as u64,
-            converged: chart.converged,
+            stress1: map.stress1,
+            iterations: map.iterations as u64,
+            converged: map.converged,
         })
         .collect();
     let pairs: u64 = components.iter().map(|component| component.pairs).sum();

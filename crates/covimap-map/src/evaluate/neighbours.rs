@@ -1,7 +1,7 @@
 //! Nearest neighbours, found along the Delaunay graph.
 //!
-//! Every point other than `p` has a Delaunay neighbour that is nearer to `p`. Followed backwards,
-//! this means that the nearest points of `p` can be gathered one after the other, always taking
+//! Every point other than `p` has a Delaunay neighbour that is nearer to `p` (a copy has one that
+//! is as near). Followed backwards, this means that the nearest points of `p` can be gathered one after the other, always taking
 //! the nearest among the Delaunay neighbours of those taken so far. The search adapts to any
 //! density and needs no index of its own.
 //!
@@ -24,7 +24,7 @@ const TIE: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NearestNeighbours {
     k: usize,
-    /// `k` a point, nearest first; of equally near ones the lower number first.
+    /// `k` a point, nearest first; equally near ones in the order in which the search meets them.
     nearest: Vec<u32>,
 }
 

@@ -56,6 +56,39 @@ fn every_measure_of_a_small_map_by_hand() {
 }
 
 #[test]
+fn a_simulated_room_gets_the_errors_of_an_independent_implementation() {
+    // Ten objects and their map by the paper's method (phi2, with the triangle constraint), computed and
+    // measured with numpy and scipy.
+    let room = [
+        [0.317725, 0.100331],
+        [0.700271, 1.054111],
+        [0.642115, 0.730297],
+        [0.091280, 0.732926],
+        [1.347323, 1.224275],
+        [1.060912, 0.221011],
+        [0.297197, 0.928916],
+        [0.101694, 0.231829],
+        [0.501729, 0.287497],
+        [1.100140, 1.180308],
+    ];
+    let mapped = [
+        [-0.57464811, 0.23353628],
+        [0.37237576, -0.24143742],
+        [-0.00954488, 0.01541369],
+        [-0.35608319, -0.46890542],
+        [0.86282001, 0.13003881],
+        [-0.04466651, 0.66139918],
+        [-0.0415224, -0.44572806],
+        [-0.5545897, -0.00721172],
+        [-0.45769751, 0.11625996],
+        [0.80355655, 0.0066347],
+    ];
+    let found = compare(&mapped, &room);
+    // 0.208333 of 3 * 10 - 6 edges, 0.041667 of 120 triples.
+    assert_eq!((found.delaunay_error, found.orientation_error), (5.0 / 24.0, Some(5.0 / 120.0)));
+}
+
+#[test]
 fn landmarks_of_one_side_only_and_small_components_are_counted_and_left_out() {
     let [a, b, c, d] = KITE;
     let rows = [

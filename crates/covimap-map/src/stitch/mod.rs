@@ -1,16 +1,61 @@
 //! Stitching: local maps into one frame.
+//!
+//! # Algorithm
+//! 1. Every two regions that share landmarks give a seam: where one lies in the frame of the other,
+//!    for either handedness, and the evidence for one of them ([`seams`]).
+//! 2. Synchronisation over the graph of regions and seams decides handedness, turn and shift of
+//!    every region, and sets aside seams that contradict the rest.
+//! 3. A landmark goes to the weighted mean of its places in the regions it belongs to; the region
+//!    whose core it is counts most, for there it was seen from all sides.
+//!
+//! Scales stay as they are: all local maps measure in the same unit.
 
 mod seams;
 
-use covimap_embed::Point;
+use covimap_embed::{Point, RelativeFrame, Similarity, SynchroniseOptions, synchronise};
 
 use crate::{LinkGraph, LocalMap, MapError, RegionCover};
+use seams::Seam;
 
+/// Weight of a landmark's place in the region whose core it is, relative to other regions.
+const CORE_WEIGHT: f64 = 4.0;
+/// Misfit, in map units, below which seams are not told apart in weight.
+const LEAST_MISFIT: f64 = 0.03;
+
+/// Positions of all landmarks of a connected graph from the maps of its regions.
 pub(crate) fn stitch(
     graph: &LinkGraph,
     cover: &RegionCover,
     maps: &[LocalMap],
 ) -> Result<Vec<Point>, MapError> {
-    let _seams = seams::find(graph, cover, maps);
-    Ok(maps[0].points.clone())
+    let edges: Vec<RelativeFrame> = seams::find(graph, cover, maps).iter().map(relative_frame).collect();
+    let options = SynchroniseOptions { scale_pull: f64::INFINITY };
+    let frames = synchronise(maps.len(), &edges, options)?.global_from_node;
+    Ok(blend(graph.landmarks(), cover, maps, &frames))
+}
+
+fn relative_frame(seam: &Seam) -> RelativeFrame {
+    let likelier = usize::from(seam.evidence < 0.0);
+    RelativeFrame {
+        a: seam.a,
+        b: seam.b,
+        a_from_b: seam.a_from_b[likelier],
+        alternative: Some(seam.a_from_b[1 - likelier]),
+        evidence: seam.evidence.abs(),
+        weight: seam.shared as f64 / (seam.misfit[likelier].powi(2) + LEAST_MISFIT.powi(2)),
+    }
+}
+
+fn blend(landmarks: usize, cover: &RegionCover, maps: &[LocalMap], frames: &[Similarity]) -> Vec<Point> {
+    let mut sums = vec![[0.0; 3]; landmarks];
+    for (index, (region, map)) in cover.regions().iter().zip(maps).enumerate() {
+        for (&landmark, &place) in region.members.iter().zip(&map.points) {
+            let own = cover.core_of()[landmark as usize] as usize == index;
+            let weight = if own { CORE_WEIGHT } else { 1.0 };
+            let point = frames[index].apply(place);
+            let sum = &mut sums[landmark as usize];
+            *sum = [sum[0] + weight * point[0], sum[1] + weight * point[1], sum[2] + weight];
+        }
+    }
+    sums.iter().map(|[x, y, weight]| [x / weight, y / weight]).collect()
 }

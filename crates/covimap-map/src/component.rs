@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
 
 /// A mapped component.
-pub(crate) struct Chart {
+pub(crate) struct ComponentMap {
     /// Positions, in the frame of [`put_in_frame`].
     pub points: Vec<Point>,
     /// Region of whose core each landmark is.
@@ -22,7 +22,7 @@ pub(crate) fn map_component(
     graph: &LinkGraph,
     params: &AutoParams,
     observer: &dyn Observer,
-) -> Result<Chart, MapError> {
+) -> Result<ComponentMap, MapError> {
     let stage = |stage, total| {
         observer.started(stage, total);
         if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
@@ -53,7 +53,7 @@ pub(crate) fn map_component(
     stage(Stage::Polish, None)?;
     let polished = polish(&graph.to_pairs(), &start, params)?;
     observer.finished(Stage::Polish);
-    Ok(Chart {
+    Ok(ComponentMap {
         stress1: polished.stress1,
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,
