@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use covimap_embed::Point;
+use covimap_embed::{EmbedError, Point};
 
 /// Why a log could not be read or a map not be built, read or written.
 #[derive(Debug, thiserror::Error)]
@@ -155,4 +155,7 @@ pub enum MapError {
         /// Fewest that a component needs.
         fewest: usize,
     },
+    /// A fit or an embedding that the numbers do not allow.
+    #[error(transparent)]
+    Embed(#[from] EmbedError),
 }
