@@ -102,12 +102,12 @@ impl Ticker {
         let thread = thread::spawn(move || {
             let (ended, changed) = &*watched;
             let mut end = lock(ended);
-            loop {
-                end = changed.wait_timeout(end, every).expect(NO_PANIC).0;
-                if *end {
-                    return;
+            while !*end {
+                let waited = changed.wait_timeout_while(end, every, |end| !*end).expect(NO_PANIC);
+                end = waited.0;
+                if waited.1.timed_out() {
+                    tick();
                 }
-                tick();
             }
         });
         Self { ended, thread: Some(thread) }
@@ -243,5 +243,11 @@ mod tests {
         drop(ticker);
         // The sending end is gone with the thread, so this comes to an end.
         heard.iter().for_each(drop);
+    }
+
+    #[test]
+    fn a_ticker_that_is_dropped_at_once_does_not_wait_for_its_tick() {
+        let century = Duration::from_secs(100 * 365 * 86_400);
+        drop(Ticker::start(century, || panic!("it is too early")));
     }
 }

@@ -30,7 +30,7 @@ fn the_picture_shows_every_landmark() {
     assert_eq!(scratch.names(), ["robot.svg"]);
     let picture = scratch.read("robot.svg");
     for post in 6..=20 {
-        assert!(picture.contains(&format!(">L{post}<")), "L{post} is not in the picture");
+        assert!(picture.contains(&format!("\nL{post}\n")), "L{post} is not in the picture");
     }
 }
 
