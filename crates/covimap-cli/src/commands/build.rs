@@ -105,7 +105,8 @@ impl Args {
             return Err(conflict(format_args!("the map would replace the log {log}; give another --output")));
         }
         // Dropped at once: a build that is killed leaves no temporary file behind.
-        Ok(drop(Output::open(path)?))
+        drop(Output::open(path)?);
+        Ok(())
     }
 }
 

@@ -41,13 +41,16 @@ enum Target {
     Ply,
 }
 
+/// Writes one format.
+type Writer<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+
 impl Args {
     pub fn run(self) -> anyhow::Result<()> {
         if self.truth.is_some() && self.to != Target::Svg {
             return Err(conflict("--truth is drawn by --to svg alone; leave it out"));
         }
         let map = GlobalMap::load(&self.map)?;
-        let write: Box<dyn FnOnce(&mut dyn Write) -> io::Result<()>> = match self.to {
+        let write: Writer = match self.to {
             Target::Csv => Box::new(|out| export::csv(&map, out)),
             Target::Geojson => Box::new(|out| export::geojson(&map, out)),
             Target::Graphml => Box::new(|out| export::graphml(&map, out)),

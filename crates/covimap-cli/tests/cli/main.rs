@@ -1,5 +1,8 @@
 //! The command line from outside: exit codes, messages, files.
 
+// Clippy takes only functions marked as tests for tests.
+#![allow(clippy::unwrap_used)]
+
 mod bad_input;
 mod build;
 mod check;
@@ -9,6 +12,7 @@ mod export;
 mod info;
 mod interrupt;
 mod output;
+mod readme;
 mod scratch;
 mod streams;
 mod usage;
