@@ -17,11 +17,12 @@
 //!
 //! # Algorithm
 //! 1. Nodes are merged into clusters, best agreement first; between clusters all edges vote. This
-//!    gives the mirroring of every node and a first rotation, see `voting.rs`.
+//!    gives the mirroring of every node and a first rotation (`voting.rs`, `merging.rs`,
+//!    `cycles.rs`).
 //! 2. An edge of the wrong handedness takes its estimate of the other handedness, if it has one;
 //!    otherwise it is dropped.
 //! 3. Rotations, scales and shifts follow in turn from a robust fit of differences on the graph,
-//!    see `graduated.rs`. What an edge loses in trust in one of them it lacks in the next.
+//!    by graduated non-convexity (`graduated.rs`). What an edge loses in trust in one of them it lacks in the next.
 //!
 //! The spectral method, the usual other way, needs the leading eigenvectors of a matrix that has
 //! them twice, and a gap that closes as the graph grows; solving on the graph needs neither.
@@ -47,6 +48,8 @@ use crate::{EmbedError, Similarity};
 mod bridges;
 mod cycles;
 mod graduated;
+mod merging;
+mod orientation;
 mod part;
 mod voting;
 

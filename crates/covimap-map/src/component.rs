@@ -1,8 +1,9 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, PairDistances, Point, Termination, newton};
+use covimap_embed::{Embedding, PairDistances, Point, Termination, newton, stress1};
 use rayon::prelude::*;
 
+use crate::places::{SeenSets, refine};
 use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
 
 /// A mapped component.
@@ -20,6 +21,7 @@ pub(crate) struct ComponentMap {
 /// Maps a connected component: regions, local maps, stitching, polish.
 pub(crate) fn map_component(
     graph: &LinkGraph,
+    sets: &SeenSets,
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
@@ -51,13 +53,23 @@ pub(crate) fn map_component(
     observer.finished(Stage::Stitch);
 
     stage(Stage::Polish, None)?;
-    let polished = polish(&graph.to_pairs(), &start, params)?;
+    let pairs = graph.to_pairs();
+    let polished = polish(&pairs, &start, params)?;
     observer.finished(Stage::Polish);
+
+    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
+        polished.points
+    } else {
+        stage(Stage::Refine, Some(params.refine_iterations as u64))?;
+        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
+        observer.finished(Stage::Refine);
+        refined.points
+    };
     Ok(ComponentMap {
-        stress1: polished.stress1,
+        stress1: stress1(&pairs, &points),
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,
-        points: polished.points,
+        points,
         region: cover.core_of().to_vec(),
         regions: cover.regions().len(),
     })

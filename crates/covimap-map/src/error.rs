@@ -82,6 +82,12 @@ pub enum MapError {
         /// The files read, as the user named them.
         sources: String,
     },
+    /// A log has more steps than can be counted.
+    #[error("the log has {steps} steps, at most {limit} can be counted; split it", limit = u32::MAX)]
+    TooManySteps {
+        /// Steps of the log.
+        steps: usize,
+    },
     /// Counts given by the caller contradict each other.
     #[error("{what}")]
     BadCounts {
@@ -89,7 +95,7 @@ pub enum MapError {
         what: String,
     },
     /// The caller's [`crate::Observer`] asked to stop.
-    #[error("interrupted; nothing was written")]
+    #[error("interrupted")]
     Interrupted,
     /// A setting is out of its range.
     #[error("setting {name} is {value}; give {wanted}")]

@@ -15,6 +15,7 @@ mod map_file;
 mod mapper;
 pub mod output;
 mod params;
+mod places;
 mod progress;
 mod regions;
 mod report;

@@ -4,6 +4,7 @@ use covimap_embed::{PairDistances, Point, stress1};
 
 use crate::classical;
 use crate::component::{ComponentMap, map_component, put_in_frame};
+use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
@@ -44,7 +45,7 @@ impl Mapper {
         let maps = components
             .iter()
             .map(|members| match self.params.method {
-                Method::Auto => self.auto_component(&graph, members, observer),
+                Method::Auto => self.auto_component(log, &graph, members, observer),
                 Method::Classical => {
                     classical_component(&counts, &graph, members, &self.params.classical, observer)
                 }
@@ -57,14 +58,20 @@ impl Mapper {
 
     fn auto_component(
         &self,
+        log: &SightingLog,
         graph: &LinkGraph,
         members: &[u32],
         observer: &dyn Observer,
     ) -> Result<ComponentMap, MapError> {
+        let mut place = vec![u32::MAX; graph.landmarks()];
+        for (k, &member) in members.iter().enumerate() {
+            place[member as usize] = k as u32;
+        }
+        let sets = SeenSets::of_component(log, &place);
         let mut map = if members.len() == graph.landmarks() {
-            map_component(graph, &self.params.auto, observer)?
+            map_component(graph, &sets, &self.params.auto, observer)?
         } else {
-            map_component(&graph.restricted_to(members), &self.params.auto, observer)?
+            map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
         };
         put_in_frame(&mut map.points);
         Ok(map)

@@ -100,6 +100,9 @@ pub struct AutoParams {
     pub local_stop: StopParams,
     /// When the polish is done. Default 60 steps or a gain of 1e-7.
     pub polish_stop: StopParams,
+    /// Most iterations of the refinement by the likelihood of the log. Default 8; 0 leaves the
+    /// configuration of least stress as it is.
+    pub refine_iterations: usize,
 }
 
 impl Default for AutoParams {
@@ -108,6 +111,7 @@ impl Default for AutoParams {
             regions: RegionParams::default(),
             local_stop: StopParams { max_iterations: 100, tolerance: 1e-5 },
             polish_stop: StopParams { max_iterations: 60, tolerance: 1e-7 },
+            refine_iterations: 8,
         }
     }
 }

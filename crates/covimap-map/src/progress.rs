@@ -13,8 +13,10 @@ pub enum Stage {
     LocalMaps,
     /// Bringing the local maps into one frame.
     Stitch,
-    /// Sparse majorisation over all pairs; counted in steps.
+    /// Least stress over all links; counted in steps.
     Polish,
+    /// Moving landmarks to where the log is most likely; counted in iterations.
+    Refine,
     /// The paper's dense scaling.
     Classical,
 }

@@ -5,9 +5,12 @@
 //! of an edge is the mean over its cycles, each weighted by how little corrupted its other edges
 //! are:
 //!
-//! `s_e = sum_c exp(-beta sum_(f in c, f != e) s_f) d_c / sum_c exp(-beta sum_(f in c, f != e) s_f)`
+//! `s_e = (q s_0 + sum_c q_c d_c) / (q + sum_c q_c)`,
+//! `q_c = min(1, min_f w_f / w_e) exp(-beta sum_f s_f)` over the edges `f != e` of `c`,
 //!
 //! iterated from plain means while `beta` grows. A right edge needs one right cycle to be cleared.
+//! An edge without cycles, or with corrupted and weak ones only, is neither cleared nor convicted:
+//! its corruption is `s_0`.
 //!
 //! # References
 //! G. Lerman, Y. Shi, "Robust group synchronization via cycle-edge message passing", Found. Comput.
@@ -15,14 +18,16 @@
 
 use std::f64::consts::PI;
 
-use super::voting::{Orientation, Vote};
+use super::orientation::{Orientation, Vote};
 
 /// Most cycles looked at for one edge.
 const MAX_CYCLES: usize = 12;
 /// `beta` of each round.
 const SHARPNESS: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
-/// Corruption of an edge that lies on no short cycle: neither cleared nor convicted.
+/// `s_0`.
 const UNKNOWN: f64 = 0.25;
+/// `q`.
+const DOUBT: f64 = 0.05;
 
 /// A cycle through some edge: its other two or three edges and what it composes to.
 struct Cycle {
@@ -36,19 +41,20 @@ pub(super) fn credibility(nodes: usize, votes: &[Vote]) -> Vec<f64> {
     let cycles = Cycles::new(nodes, votes);
     let mut corruption = vec![0.0; votes.len()];
     for sharpness in std::iter::once(0.0).chain(SHARPNESS) {
-        corruption = (0..votes.len())
-            .map(|edge| {
-                let (mut sum, mut weights) = (0.0, 0.0);
-                for cycle in cycles.of(edge) {
-                    let others: f64 =
-                        cycle.others[..cycle.length].iter().map(|&f| corruption[f as usize]).sum();
-                    let weight = (-sharpness * others).exp();
-                    sum += weight * cycle.inconsistency;
-                    weights += weight;
-                }
-                if weights > 0.0 { sum / weights } else { UNKNOWN }
-            })
-            .collect();
+        let of = |edge: usize| {
+            let (mut sum, mut weights) = (DOUBT * UNKNOWN, DOUBT);
+            for cycle in cycles.of(edge) {
+                let others = || cycle.others[..cycle.length].iter().map(|&other| other as usize);
+                let weakest =
+                    others().fold(votes[edge].weight, |least, other| least.min(votes[other].weight));
+                let corrupted: f64 = others().map(|other| corruption[other]).sum();
+                let weight = weakest / votes[edge].weight * (-sharpness * corrupted).exp();
+                sum += weight * cycle.inconsistency;
+                weights += weight;
+            }
+            sum / weights
+        };
+        corruption = (0..votes.len()).map(of).collect();
     }
     let sharpest = SHARPNESS[SHARPNESS.len() - 1];
     corruption.into_iter().map(|s| (-sharpest * s).exp()).collect()
@@ -146,5 +152,55 @@ impl Steps {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Complex;
+
+    fn edge(a: u32, b: u32, angle: f64, mirrored: bool) -> Vote {
+        let a_from_b = Orientation { rotation: Complex::from_polar(1.0, angle), mirrored };
+        Vote { a, b, a_from_b, weight: 1.0 }
+    }
+
+    #[test]
+    fn a_wrong_edge_is_convicted_and_its_neighbours_cleared() {
+        // All nodes face one way, but for the edge 0-1 of five nodes that all see one another.
+        for (angle, mirrored) in [(1.5, false), (0.0, true)] {
+            let ends = (0..5).flat_map(|a| (a + 1..5).map(move |b| (a, b)));
+            let mut votes: Vec<Vote> = ends.map(|(a, b)| edge(a, b, 0.0, false)).collect();
+            votes[0] = edge(0, 1, angle, mirrored);
+            let credible = credibility(5, &votes);
+            assert!(credible[0] < 1e-6, "{}", credible[0]);
+            assert!(credible[1..].iter().all(|&c| c > 0.9), "{credible:?}");
+        }
+    }
+
+    #[test]
+    fn cycles_of_two_three_and_four_edges_are_seen_and_longer_ones_not() {
+        let unknown = (-32.0 * UNKNOWN).exp();
+        for length in 2..6 {
+            let ring = |mirrors: u32| -> Vec<Vote> {
+                (0..length).map(|k| edge(k, (k + 1) % length, 0.0, k < mirrors)).collect()
+            };
+            // Two reflections cancel. One does not, and nothing tells which edge is wrong.
+            let (right, wrong) =
+                (credibility(length as usize, &ring(2)), credibility(length as usize, &ring(1)));
+            assert!(right.iter().all(|&c| (c > 10.0 * unknown) == (length < 5)), "{length} {right:?}");
+            assert!(wrong.iter().all(|&c| c > 0.5 * unknown && c < 2.0 * unknown), "{length} {wrong:?}");
+        }
+    }
+
+    #[test]
+    fn weak_edges_convict_nobody() {
+        // The strong edge 0-1 against three paths of edges that say next to nothing.
+        let mut votes = vec![edge(0, 1, 0.0, true)];
+        for middle in 2..5 {
+            votes.extend([edge(0, middle, 0.0, false), edge(middle, 1, 0.0, false)]);
+        }
+        votes[1..].iter_mut().for_each(|vote| vote.weight = 1e-6);
+        assert!((credibility(5, &votes)[0].ln() + 32.0 * UNKNOWN).abs() < 0.01);
     }
 }

@@ -31,7 +31,8 @@ const SHRINK: f64 = 0.5;
 const TUNING: f64 = 3.0;
 /// Least noise believed in, as a share of the unit of the measurements.
 const LEAST_NOISE: f64 = 1e-9;
-/// The fit is done when no trust changes by more than this at a `sigma` that has settled.
+/// The fit is done when the mean trust changes by less than this, and `sigma` by less than this
+/// share.
 const SETTLED: f64 = 1e-3;
 /// Least share of its weight that an edge has in a step, so that the system keeps full rank.
 const LEAST_TRUST: f64 = 1e-12;
@@ -82,7 +83,7 @@ pub(super) fn fit<const K: usize>(
     let mut sigma = kind.first_sigma;
     for _ in 0..MAX_STEPS {
         let sizes = noise.standardised(&residuals(&values, edges, kind.period));
-        let before = std::mem::replace(&mut trust, sizes.iter().map(|&r| trust_of(r, sigma)).collect());
+        let before = std::mem::replace(&mut trust, noise.trusts(&sizes, sigma));
         let weighted = edges.iter().zip(&trust).map(|(edge, trust)| Difference {
             weight: edge.weight * (edge.prior * trust).max(LEAST_TRUST),
             ..*edge
@@ -91,9 +92,10 @@ pub(super) fn fit<const K: usize>(
         system.step(&mut values, &weighted, kind.period)?;
         let sizes = noise.standardised(&residuals(&values, edges, kind.period));
         let largest = sizes.iter().fold(0.0, |most: f64, &r| most.max(r));
-        let least = TUNING * noise.of(&sizes).max(LEAST_NOISE * kind.unit);
-        let change = trust.iter().zip(&before).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-        if largest <= least || change <= SETTLED && sigma <= least * (1.0 + SETTLED) {
+        let floor = LEAST_NOISE * kind.unit;
+        let least = TUNING * noise.of(&sizes).max(floor);
+        let change = trust.iter().zip(&before).map(|(a, b)| (a - b).abs()).sum::<f64>() / edges.len() as f64;
+        if largest <= floor || change <= SETTLED && sigma <= least * (1.0 + SETTLED) {
             break;
         }
         sigma = (SHRINK * sigma.min(largest)).max(least);
@@ -102,13 +104,6 @@ pub(super) fn fit<const K: usize>(
     values.truncate(nodes);
     values.iter_mut().flat_map(|value| value.iter_mut().zip(&first)).for_each(|(x, x0)| *x -= x0);
     Ok(Fitted { values, trust })
-}
-
-fn trust_of(r: f64, sigma: f64) -> f64 {
-    if sigma.is_infinite() {
-        return 1.0;
-    }
-    (sigma * sigma / (sigma * sigma + r * r)).powi(2)
 }
 
 /// `d - (x_b - x_a)`, taken into the period.
@@ -161,6 +156,17 @@ impl Noise {
     fn standardised<const K: usize>(&self, residuals: &[[f64; K]]) -> Vec<f64> {
         let length = |r: &[f64; K]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
         residuals.iter().zip(&self.roots).map(|(r, root)| root * length(r)).collect()
+    }
+
+    /// Trust in each edge; full trust in bridges, which nothing speaks against.
+    fn trusts(&self, sizes: &[f64], sigma: f64) -> Vec<f64> {
+        let mut trust = vec![1.0; sizes.len()];
+        if sigma.is_finite() {
+            for &k in &self.cyclic {
+                trust[k] = (sigma * sigma / (sigma * sigma + sizes[k] * sizes[k])).powi(2);
+            }
+        }
+        trust
     }
 
     /// Eq. (2); zero without cycles.
@@ -222,5 +228,79 @@ impl System {
             value.iter_mut().enumerate().for_each(|(k, x)| *x += rhs[k * self.nodes + node]);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FREE: Kind = Kind { period: None, unit: 1.0, first_sigma: f64::INFINITY, pull: 0.0 };
+
+    fn difference(a: u32, b: u32, measured: f64, weight: f64) -> Difference<1> {
+        Difference { a, b, measured: [measured], weight, prior: 1.0 }
+    }
+
+    fn assert_values(fitted: &Fitted<1>, expected: &[f64]) {
+        for ([found], expected) in fitted.values.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{:?}", fitted.values);
+        }
+    }
+
+    #[test]
+    fn a_loop_shares_its_gap() {
+        // 1 + 1 against 2.3: the gap of 0.3 falls on three equal edges.
+        let edges = [difference(0, 1, 1.0, 1.0), difference(1, 2, 1.0, 1.0), difference(0, 2, 2.3, 1.0)];
+        let fitted = fit(vec![[0.0]; 3], &edges, &FREE).unwrap();
+        assert_values(&fitted, &[0.0, 1.1, 2.2]);
+        assert!((fitted.trust[0] - fitted.trust[2]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn of_a_loop_the_weak_edge_gives_way() {
+        // Weights 2, 2, 1 share the gap of 0.3 as 1/2 : 1/2 : 1, in the least-squares fit.
+        let edges = [difference(0, 1, 1.0, 2.0), difference(1, 2, 1.0, 2.0), difference(0, 2, 2.3, 1.0)];
+        let noise = Noise::new(3, &edges);
+        let mut values = vec![[0.0]; 3];
+        System::new(3, edges.iter()).step(&mut values, &edges, None).unwrap();
+        assert!((values[1][0] - values[0][0] - 1.075).abs() < 1e-12);
+        let left = residuals(&values, &edges, None);
+        assert!((left[2][0] - 0.15).abs() < 1e-12);
+        // Eq. (2) with m = n = 3. The sizes are 0.075, 0.075 and 0.15 times the roots of the
+        // weights over their mean of 5/3; the median is 0.075 sqrt(6/5).
+        let expected = 1.48 * f64::sqrt(3.0) * 0.075 * f64::sqrt(1.2);
+        assert!((noise.of(&noise.standardised(&left)) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_wrong_difference_among_right_ones_is_left_out() {
+        let mut edges = Vec::new();
+        for a in 0..5 {
+            edges.extend((a + 1..5).map(|b| difference(a, b, f64::from(b - a), 1.0)));
+        }
+        edges[2].measured[0] = 50.0;
+        let fitted = fit(vec![[0.0]; 5], &edges, &FREE).unwrap();
+        assert_values(&fitted, &[0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert!(
+            fitted.trust.iter().enumerate().all(|(k, &trust)| (trust < 1e-6) == (k == 2)),
+            "{:?}",
+            fitted.trust
+        );
+    }
+
+    #[test]
+    fn without_loops_every_edge_is_believed() {
+        let edges = [difference(1, 0, -7.0, 1.0), difference(1, 2, 1e-3, 5.0)];
+        let fitted = fit(vec![[0.0]; 3], &edges, &FREE).unwrap();
+        assert_values(&fitted, &[0.0, 7.0, 7.001]);
+        assert_eq!(fitted.trust, [1.0; 2]);
+    }
+
+    #[test]
+    fn a_period_is_minded() {
+        let edges = [difference(0, 1, 3.0, 1.0), difference(1, 2, 3.0, 1.0), difference(2, 0, 4.0, 1.0)];
+        let kind = Kind { period: Some(10.0), ..FREE };
+        let start = vec![[0.0], [2.0], [7.5]];
+        assert_values(&fit(start, &edges, &kind).unwrap(), &[0.0, 3.0, 6.0]);
     }
 }

@@ -6,13 +6,14 @@ use nalgebra::Complex;
 
 use super::bridges::bridges;
 use super::graduated::{Difference, Kind, fit};
-use super::voting::{Orientation, Vote, settle};
+use super::orientation::{Orientation, Vote};
+use super::voting::settle;
 use super::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions};
 use crate::{EmbedError, Similarity};
 
 /// Edges that the voted rotations miss by more than this count little in the first fit, rad.
 const VOTED_WITHIN: f64 = 1.0;
-/// Vote of an edge without evidence: it decides if no other edge speaks.
+/// Vote of an edge without evidence, as a share of the largest: it decides if no other speaks.
 const LEAST_VOTE: f64 = 1e-9;
 
 /// A connected part of the graph with nodes numbered from 0.
@@ -56,7 +57,8 @@ impl Part {
         &self,
         options: SynchroniseOptions,
     ) -> Result<(Vec<Similarity>, Vec<EdgeReport>), EmbedError> {
-        let votes: Vec<Vote> = self.edges.iter().map(vote_of).collect();
+        let most = self.edges.iter().fold(0.0, |most: f64, edge| most.max(edge.evidence));
+        let votes: Vec<Vote> = self.edges.iter().map(|edge| vote_of(edge, most)).collect();
         let voted = settle(self.nodes.len(), &votes);
         let mut frames: Vec<Similarity> = voted.into_iter().map(frame_of).collect();
         let estimates: Vec<_> = self.edges.iter().map(|edge| estimate_for(edge, &frames)).collect();
@@ -158,11 +160,12 @@ impl Part {
     }
 }
 
-/// The vote of an edge for its likelier estimate.
-fn vote_of(edge: &RelativeFrame) -> Vote {
+/// The vote of an edge for its likelier estimate; `most` is the largest evidence of all edges.
+fn vote_of(edge: &RelativeFrame, most: f64) -> Vote {
     let Similarity { cos, sin, mirrored, .. } = edge.a_from_b;
     let a_from_b = Orientation { rotation: Complex::new(cos, sin), mirrored };
-    Vote { a: edge.a, b: edge.b, a_from_b, weight: edge.evidence.max(LEAST_VOTE) }
+    let weight = if edge.evidence > 0.0 { edge.evidence / most } else { 0.0 };
+    Vote { a: edge.a, b: edge.b, a_from_b, weight: weight.max(LEAST_VOTE) }
 }
 
 fn frame_of(orientation: Orientation) -> Similarity {

@@ -10,34 +10,41 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::CoVisibility;
-use super::symmetric::{LowerRows, symmetric};
+use super::symmetric::{LowerRows, Symmetric};
 use crate::{MapError, Observer, SightingLog, Stage};
 
 /// See [`CoVisibility::count`].
 pub(super) fn count(log: &SightingLog, observer: &dyn Observer) -> Result<CoVisibility, MapError> {
+    check_steps(log.steps())?;
     let landmarks = log.names().len();
     observer.started(Stage::Count, Some(landmarks as u64));
-    let appearances = Appearances::new(log);
+    let appearances = Appearances::new(log, pieces(log), observer)?;
     let sightings: Vec<u32> = (0..landmarks).into_par_iter().map(|i| appearances.count(i)).collect();
-    let rows = balanced_ranges(&sightings, TASKS);
-    let lower = rows
+    let lower = balanced_ranges(&sightings, TASKS)
         .into_par_iter()
         .map_init(
             || RowCounter::new(landmarks),
             |counter, rows| {
-                if observer.interrupted() {
-                    return Err(MapError::Interrupted);
-                }
+                check_interrupt(observer)?;
                 let lower = counter.rows(log, &appearances, rows.clone());
                 observer.advanced(rows.len() as u64);
                 Ok(lower)
             },
         )
-        .collect::<Result<Vec<_>, _>>()?;
+        .collect::<Result<Vec<_>, MapError>>()?;
     drop(appearances);
-    let (starts, partners, together) = symmetric(landmarks, &lower);
+    let pairs = Symmetric::from_lower(landmarks, &lower);
     observer.finished(Stage::Count);
-    Ok(CoVisibility { steps: log.steps() as u64, sightings, starts, partners, together })
+    Ok(CoVisibility { steps: log.steps() as u64, sightings, pairs })
+}
+
+/// Steps are numbered and counted in 32 bits.
+fn check_steps(steps: usize) -> Result<(), MapError> {
+    if u32::try_from(steps).is_err() { Err(MapError::TooManySteps { steps }) } else { Ok(()) }
+}
+
+fn check_interrupt(observer: &dyn Observer) -> Result<(), MapError> {
+    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
 }
 
 /// Rows are counted in about so many tasks, each of them short enough to be interrupted.
@@ -73,22 +80,30 @@ struct Piece {
 
 /// A piece has at least so many sightings,
 const MIN_PIECE: usize = 1 << 20;
-/// and so many a landmark, which keeps `starts` small beside `steps`.
+/// and so many for each landmark, which keeps `starts` small beside `steps`.
 const MIN_PIECE_PER_LANDMARK: usize = 8;
 
+/// In how many pieces to transpose a log.
+fn pieces(log: &SightingLog) -> usize {
+    let smallest = MIN_PIECE.max(MIN_PIECE_PER_LANDMARK * log.names().len());
+    (log.sightings() / smallest).clamp(1, 4 * rayon::current_num_threads())
+}
+
 impl Appearances {
-    fn new(log: &SightingLog) -> Self {
-        let smallest = MIN_PIECE.max(MIN_PIECE_PER_LANDMARK * log.names().len());
-        let count = (log.sightings() / smallest).clamp(1, 4 * rayon::current_num_threads());
-        let cut = |piece: usize| log.steps() * piece / count;
-        let pieces = (0..count).into_par_iter().map(|piece| Piece::new(log, cut(piece)..cut(piece + 1)));
-        Self { pieces: pieces.collect() }
+    fn new(log: &SightingLog, pieces: usize, observer: &dyn Observer) -> Result<Self, MapError> {
+        let cut = |piece: usize| log.steps() * piece / pieces;
+        let transpose = |piece: usize| {
+            check_interrupt(observer)?;
+            Ok(Piece::new(log, cut(piece)..cut(piece + 1)))
+        };
+        let pieces = (0..pieces).into_par_iter().map(transpose).collect::<Result<_, MapError>>()?;
+        Ok(Self { pieces })
     }
 
     /// `n_i`.
     fn count(&self, landmark: usize) -> u32 {
         let count: usize = self.pieces.iter().map(|piece| piece.steps(landmark).len()).sum();
-        u32::try_from(count).expect("a log has fewer than 2^32 steps (bug in covimap)")
+        u32::try_from(count).expect("steps were checked (bug in covimap)")
     }
 }
 
@@ -106,7 +121,7 @@ impl Piece {
         let mut steps = vec![0; starts[starts.len() - 1]];
         let mut next = starts.clone();
         for step in stretch {
-            let number = u32::try_from(step).expect("a log has fewer than 2^32 steps (bug in covimap)");
+            let number = u32::try_from(step).expect("steps were checked (bug in covimap)");
             for &landmark in log.step(step) {
                 let place = &mut next[landmark as usize];
                 steps[*place] = number;
@@ -137,9 +152,10 @@ impl RowCounter {
     fn rows(&mut self, log: &SightingLog, appearances: &Appearances, rows: Range<usize>) -> LowerRows {
         let mut lower = LowerRows::new(rows.start);
         for row in rows {
-            let steps = appearances.pieces.iter().flat_map(|piece| piece.steps(row));
-            for &step in steps {
-                self.add(log.step(step as usize), row);
+            for piece in &appearances.pieces {
+                for group in piece.steps(row).chunks(GROUP) {
+                    self.add(log, group, row);
+                }
             }
             self.touched.sort_unstable();
             for &partner in &self.touched {
@@ -151,14 +167,73 @@ impl RowCounter {
         lower
     }
 
-    /// Counts the landmarks of a step below `row`.
-    fn add(&mut self, step: &[u32], row: usize) {
-        for &partner in step.iter().take_while(|&&partner| (partner as usize) < row) {
-            let counter = &mut self.counters[partner as usize];
-            if *counter == 0 {
-                self.touched.push(partner);
-            }
-            *counter += 1;
+    /// Counts the landmarks below `row` of a group of steps.
+    ///
+    /// The steps of a landmark are strewn over the log, so most of the time goes into waiting for
+    /// memory. Finding all steps first, and looking at the begin of each, lets these waits overlap.
+    fn add(&mut self, log: &SightingLog, group: &[u32], row: usize) {
+        let mut steps: [&[u32]; GROUP] = [&[]; GROUP];
+        for (slot, &step) in steps.iter_mut().zip(group) {
+            *slot = log.step(step as usize);
         }
+        let touch = steps.iter().fold(0, |all, step| all ^ step.first().copied().unwrap_or(0));
+        std::hint::black_box(touch);
+        for step in steps {
+            for &partner in step.iter().take_while(|&&partner| (partner as usize) < row) {
+                let counter = &mut self.counters[partner as usize];
+                if *counter == 0 {
+                    self.touched.push(partner);
+                }
+                *counter += 1;
+            }
+        }
+    }
+}
+
+/// Steps visited at once.
+const GROUP: usize = 32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Silent;
+
+    #[test]
+    fn a_landmark_knows_its_steps_however_many_pieces_there_are() {
+        let steps: Vec<Vec<String>> = (0..50)
+            .map(|t| (0..7).filter(|id| t % (id + 1) == 0).map(|id| id.to_string()).collect())
+            .collect();
+        let log = SightingLog::from_steps(&steps);
+        for pieces in [1, 2, 3, 50, 60] {
+            let appearances = Appearances::new(&log, pieces, &Silent).unwrap();
+            for landmark in 0..7 {
+                let found: Vec<u32> =
+                    appearances.pieces.iter().flat_map(|piece| piece.steps(landmark)).copied().collect();
+                // Landmark i is seen at every (i + 1)-th step.
+                let every: Vec<u32> = (0..50).step_by(landmark + 1).collect();
+                assert_eq!(found, every);
+                assert_eq!(appearances.count(landmark) as usize, every.len());
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_of_about_the_same_weight_cover_everything_once() {
+        assert_eq!(balanced_ranges(&[], 4), []);
+        assert_eq!(balanced_ranges(&[0, 0, 0], 4), vec![0..3; 1]);
+        // 12 in all, so that a range ends when it has 12 / 3 + 1 = 5.
+        assert_eq!(balanced_ranges(&[1, 1, 4, 3, 2, 1], 3), [0..3, 3..5, 5..6]);
+        assert_eq!(balanced_ranges(&[9, 1, 1], 4), [0..1, 1..3]);
+    }
+
+    #[test]
+    fn steps_are_counted_in_32_bits() {
+        assert!(check_steps(u32::MAX as usize).is_ok());
+        let error = check_steps(1 << 32).unwrap_err();
+        assert!(matches!(error, MapError::TooManySteps { .. }));
+        assert_eq!(
+            error.to_string(),
+            "the log has 4294967296 steps, at most 4294967295 can be counted; split it"
+        );
     }
 }

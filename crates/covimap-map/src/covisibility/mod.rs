@@ -3,7 +3,7 @@
 mod count;
 mod symmetric;
 
-use symmetric::{LowerRows, symmetric};
+use symmetric::{LowerRows, Symmetric};
 
 use crate::{LandmarkId, MapError, Observer, SightingLog};
 
@@ -15,21 +15,20 @@ use crate::{LandmarkId, MapError, Observer, SightingLog};
 pub struct CoVisibility {
     steps: u64,
     sightings: Vec<u32>,
-    /// Row of landmark i: `starts[i]..starts[i + 1]` of `partners` and `together`.
-    starts: Vec<usize>,
-    partners: Vec<u32>,
-    together: Vec<u32>,
+    pairs: Symmetric,
 }
 
 impl CoVisibility {
     /// Counts a log: exact, and the same for any number of threads.
     ///
-    /// Time O(sum over steps of k^2) for steps of k landmarks, shared by all threads; memory beside
-    /// the result is 4 bytes a sighting and half of the result.
+    /// Time O(sum over steps of k^2) for steps of k landmarks, shared by all threads. The result
+    /// takes 16 bytes a pair; while it is made, 4 bytes a sighting, or 8 bytes a pair, come on top.
+    /// Tells the observer of [`crate::Stage::Count`], counted in landmarks.
     ///
     /// # Errors
     ///
-    /// [`MapError::Interrupted`] if the observer asks for it.
+    /// - [`MapError::TooManySteps`]: the log has 2^32 steps or more.
+    /// - [`MapError::Interrupted`]: the observer asked for it.
     pub fn count(log: &SightingLog, observer: &dyn Observer) -> Result<Self, MapError> {
         count::count(log, observer)
     }
@@ -46,34 +45,30 @@ impl CoVisibility {
         sightings: Vec<u32>,
         pairs: impl IntoIterator<Item = (LandmarkId, LandmarkId, u32)>,
     ) -> Result<Self, MapError> {
-        let bad = |what: String| Err(MapError::BadCounts { what });
+        let bad = |what: String| MapError::BadCounts { what };
         if let Some(i) = sightings.iter().position(|&count| u64::from(count) > steps) {
-            return bad(format!("landmark {i} is seen {} times in {steps} steps", sightings[i]));
+            return Err(bad(format!("landmark {i} is seen {} times in {steps} steps", sightings[i])));
         }
         let mut lower: Vec<(u32, u32, u32)> =
             pairs.into_iter().map(|(a, b, count)| (a.0.max(b.0), a.0.min(b.0), count)).collect();
         lower.sort_unstable();
+        for &(high, low, count) in &lower {
+            check_pair((low, high), count, &sightings).map_err(bad)?;
+        }
+        if let Some(twice) = lower.windows(2).find(|two| (two[0].0, two[0].1) == (two[1].0, two[1].1)) {
+            let (high, low, _) = twice[0];
+            return Err(bad(format!("pair ({low}, {high}) occurs twice; give every pair once")));
+        }
         let mut rows = LowerRows::new(0);
-        let mut pairs = lower.iter().peekable();
+        let mut entries = lower.iter().peekable();
         for row in 0..sightings.len() {
-            while let Some(&&(high, low, count)) = pairs.peek().filter(|pair| pair.0 as usize == row) {
-                pairs.next();
-                let most = sightings[row].min(sightings[low as usize]);
-                if high == low || count == 0 || count > most {
-                    return bad(format!("pair ({low}, {high}) is seen {count} times, of at most {most}"));
-                }
-                if pairs.peek().is_some_and(|next| (next.0, next.1) == (high, low)) {
-                    return bad(format!("pair ({low}, {high}) occurs twice; give every pair once"));
-                }
-                rows.push(low, count);
+            while let Some((_, low, count)) = entries.next_if(|entry| entry.0 as usize == row) {
+                rows.push(*low, *count);
             }
             rows.end_row();
         }
-        if let Some((high, low, _)) = pairs.next() {
-            return bad(format!("pair ({low}, {high}) names a landmark beyond {}", sightings.len()));
-        }
-        let (starts, partners, together) = symmetric(sightings.len(), &[rows]);
-        Ok(Self { steps, sightings, starts, partners, together })
+        let pairs = Symmetric::from_lower(sightings.len(), &[rows]);
+        Ok(Self { steps, sightings, pairs })
     }
 
     /// Number of landmarks N.
@@ -97,14 +92,14 @@ impl CoVisibility {
     /// Number of unordered pairs seen together at least once.
     #[must_use]
     pub fn pair_count(&self) -> usize {
-        self.partners.len() / 2
+        self.pairs.columns.len() / 2
     }
 
     /// The partners of a landmark, ascending, and `n_ij` of each.
     #[must_use]
     pub fn row(&self, id: LandmarkId) -> (&[u32], &[u32]) {
-        let range = self.starts[id.index()]..self.starts[id.index() + 1];
-        (&self.partners[range.clone()], &self.together[range])
+        let range = self.pairs.starts[id.index()]..self.pairs.starts[id.index() + 1];
+        (&self.pairs.columns[range.clone()], &self.pairs.values[range])
     }
 
     /// `n_ij`; 0 for a pair never seen together, `n_i` for a landmark with itself.
@@ -122,6 +117,24 @@ impl CoVisibility {
     pub fn frequency(&self, a: LandmarkId, b: LandmarkId) -> f64 {
         let both = f64::from(self.together(a, b));
         both / (f64::from(self.sightings[a.index()]) + f64::from(self.sightings[b.index()]) - both)
+    }
+}
+
+/// Whether a pair can have been seen together so often.
+fn check_pair((low, high): (u32, u32), count: u32, sightings: &[u32]) -> Result<(), String> {
+    let Some(&of_high) = sightings.get(high as usize) else {
+        return Err(format!(
+            "pair ({low}, {high}) names a landmark beyond the {} there are",
+            sightings.len()
+        ));
+    };
+    let most = of_high.min(sightings[low as usize]);
+    if low == high {
+        Err(format!("pair ({low}, {high}) names one landmark twice"))
+    } else if (1..=most).contains(&count) {
+        Ok(())
+    } else {
+        Err(format!("pair ({low}, {high}) is seen together {count} times, it can be 1 to {most}"))
     }
 }
 

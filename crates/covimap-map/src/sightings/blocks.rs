@@ -43,14 +43,18 @@ pub(super) struct Blocks<R> {
     rest: Vec<u8>,
     /// Number of the line that `rest` begins.
     line: u64,
+    /// Whether to go on after a line over the limit.
+    goes_on: bool,
+    /// How the stream failed while a line was skipped.
+    failed: Option<io::Error>,
     ended: bool,
 }
 
 const BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
 
 impl<R: Read> Blocks<R> {
-    pub(super) fn new(input: R, limits: Limits) -> Self {
-        Self { input, limits, rest: Vec::new(), line: 1, ended: false }
+    pub(super) fn new(input: R, limits: Limits, goes_on: bool) -> Self {
+        Self { input, limits, rest: Vec::new(), line: 1, goes_on, failed: None, ended: false }
     }
 
     /// Lines begun so far.
@@ -63,7 +67,8 @@ impl<R: Read> Blocks<R> {
         (0..count).map_while(|_| self.next_block()).collect()
     }
 
-    fn next_block(&mut self) -> Option<Block> {
+    /// The next block; `None` at the end of the stream.
+    pub(super) fn next_block(&mut self) -> Option<Block> {
         if self.ended {
             return None;
         }
@@ -90,6 +95,9 @@ impl<R: Read> Blocks<R> {
 
     /// Appends up to a block of text; true at the end of the stream.
     fn fill(&mut self, text: &mut Vec<u8>) -> io::Result<bool> {
+        if let Some(error) = self.failed.take() {
+            return Err(error);
+        }
         let wanted = self.limits.block_bytes;
         text.reserve(wanted);
         let read = self.input.by_ref().take(wanted as u64).read_to_end(text)?;
@@ -117,24 +125,38 @@ impl<R: Read> Blocks<R> {
         block
     }
 
-    /// Skips a line over the limit without keeping it.
+    /// Refuses a line over the limit.
     fn too_long(&mut self) -> Block {
         let first_line = self.line;
         let fault = self.fault(self.limits.too_long());
+        if self.goes_on {
+            self.skip_line();
+        } else {
+            self.ended = true;
+        }
+        Block { text: Vec::new(), first_line, fault: Some(fault) }
+    }
+
+    /// Reads on to the end of a line without keeping it. Should the stream fail, that is for the
+    /// next block to say.
+    fn skip_line(&mut self) {
         let mut scratch = Vec::new();
         loop {
             scratch.clear();
             let read = self.fill(&mut scratch);
-            if let Some(at) = memchr::memchr(b'\n', &scratch) {
+            let line_end = memchr::memchr(b'\n', &scratch);
+            if let Some(at) = line_end {
                 self.rest = scratch.split_off(at + 1);
-                break;
             }
-            if !matches!(read, Ok(false)) {
-                self.ended = true;
-                break;
+            match read {
+                Ok(at_end) if at_end || line_end.is_some() => return,
+                Ok(_) => {}
+                Err(error) => {
+                    self.failed = Some(error);
+                    return;
+                }
             }
         }
-        Block { text: Vec::new(), first_line, fault: Some(fault) }
     }
 
     /// A fault at the line that would come next.

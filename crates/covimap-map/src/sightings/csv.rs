@@ -3,7 +3,7 @@
 //! Rows of one step follow each other; a step that comes back later is an error, because two
 //! half steps would make two landmarks look apart that were seen together. The values of `step`
 //! are names, not numbers: they need not ascend. The reader keeps every one of them until the end
-//! of the file, some 20 bytes a step.
+//! of the file, some 30 bytes a step.
 //!
 //! A row is one line: a quoted field must not run over a line end, so that one missing quote is
 //! found on its line and does not swallow the rest of the file. White space around a field is no
@@ -12,7 +12,7 @@
 use std::borrow::Cow;
 
 use super::interner::{Interner, NameHash};
-use super::read::check_id;
+use super::lines::{check_id, excerpt};
 use super::tokens::LogBuilder;
 use crate::LandmarkId;
 
@@ -78,10 +78,10 @@ impl Rows {
         }
         let hash = NameHash::of(step);
         if self.steps.find(hash, step).is_some() {
-            let step: String = step.chars().take(MAX_QUOTED).collect();
             return Err(format!(
-                "step `{step}` has rows further up, with other steps between; rows of one step must be \
-                 contiguous, sort the file by step"
+                "step {} has rows further up, with other steps between; rows of one step must be \
+                 contiguous, sort the file by step",
+                excerpt(step)
             ));
         }
         if self.step.is_some() {
@@ -92,21 +92,16 @@ impl Rows {
     }
 }
 
-/// Characters of the input that a message repeats.
-const MAX_QUOTED: usize = 60;
-
 fn read_header(line: &str) -> Result<Header, String> {
     let fields = fields(line)?;
     let column = |name: &str| fields.iter().position(|field| field == name);
     match (column("step"), column("landmark")) {
         (Some(step), Some(landmark)) => Ok(Header::Columns { step, landmark, width: fields.len() }),
-        _ => {
-            let found: String = line.trim_ascii().chars().take(MAX_QUOTED).collect();
-            Err(format!(
-                "the header must name the columns `step` and `landmark`, but the first line is `{found}`; \
-                 put `step,landmark` in front, separated by a comma"
-            ))
-        }
+        _ => Err(format!(
+            "the header must name the columns `step` and `landmark`, but the first line is {}; put \
+             `step,landmark` in front, with a comma between",
+            excerpt(line.trim_ascii())
+        )),
     }
 }
 

@@ -1,8 +1,10 @@
 //! String IDs in, dense numbers out.
 
+use std::borrow::Cow;
+use std::hash::Hasher;
+
 use hashbrown::HashTable;
 use rustc_hash::FxHasher;
-use std::hash::Hasher;
 
 use crate::{LandmarkId, LandmarkNames};
 
@@ -61,6 +63,26 @@ impl Interner {
         self.table.find(hash.spread(), is_it).map(|slot| slot.number)
     }
 
+    /// The numbers of several strings, `None` for a string that has none.
+    ///
+    /// Among a million strings, look-ups wait for memory. All visits to the table come first and
+    /// all comparisons after them, so that these waits overlap.
+    pub(super) fn find_all<'s>(
+        &'s self,
+        hashes: &'s [NameHash],
+        names: &'s [Cow<'_, str>],
+    ) -> impl Iterator<Item = Option<u32>> + 's {
+        let same_hash = |&hash: &NameHash| {
+            let slot = self.table.find(hash.spread(), |slot| slot.hash == hash);
+            slot.map(|slot| slot.number)
+        };
+        let candidates: Vec<_> = hashes.iter().map(same_hash).collect();
+        candidates.into_iter().zip(hashes).zip(names).map(|((candidate, &hash), name)| {
+            let is_it = self.names.name(LandmarkId(candidate?)) == name;
+            if is_it { candidate } else { self.find(hash, name) }
+        })
+    }
+
     /// The number of a string; a new string gets the next one.
     pub(super) fn intern(&mut self, hash: NameHash, name: &str) -> u32 {
         if let Some(number) = self.find(hash, name) {
@@ -69,5 +91,38 @@ impl Interner {
         let number = self.names.push(name).0;
         self.table.insert_unique(hash.spread(), Slot { hash, number }, |slot| slot.hash.spread());
         number
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strings_are_numbered_in_order_and_found_again() {
+        let mut interner = Interner::default();
+        let names: Vec<String> = (0..5000).map(|i| format!("name {}", i * i % 3001)).collect();
+        let mut expected: Vec<&str> = Vec::new();
+        for name in &names {
+            let number = interner.intern(NameHash::of(name), name);
+            if number as usize == expected.len() {
+                expected.push(name);
+            }
+            assert_eq!(expected[number as usize], name);
+        }
+        assert_eq!(interner.names().iter().collect::<Vec<_>>(), expected);
+        assert_eq!(interner.find(NameHash::of("name"), "name"), None);
+    }
+
+    #[test]
+    fn strings_of_the_same_hash_are_kept_apart() {
+        let hash = NameHash(7);
+        let mut interner = Interner::default();
+        assert_eq!(interner.intern(hash, "A"), 0);
+        assert_eq!(interner.intern(hash, "B"), 1);
+        assert_eq!(interner.intern(hash, "A"), 0);
+        let names = ["B", "C", "A"].map(Cow::Borrowed);
+        let found: Vec<_> = interner.find_all(&[hash; 3], &names).collect();
+        assert_eq!(found, [Some(1), None, Some(0)]);
     }
 }

@@ -8,14 +8,16 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 /// Reads one line; `false` if it is blank.
 pub(super) fn parse_line<'a>(line: &'a str, ids: &mut Vec<Cow<'a, str>>) -> Result<bool, String> {
+    let start = ids.len();
     if scan(line.as_bytes(), line, ids).is_some() {
         return Ok(true);
     }
-    ids.clear();
+    ids.truncate(start);
     if line.bytes().all(|byte| byte.is_ascii_whitespace()) {
         return Ok(false);
     }
@@ -225,7 +227,7 @@ impl<'de> Visitor<'de> for StepVisitor {
                 "seen" => seen = Some(map.next_value::<Ids<'de>>()?.0),
                 "t" if time => return Err(A::Error::duplicate_field("t")),
                 "t" => {
-                    map.next_value::<Option<f64>>()?;
+                    map.next_value::<Time>()?;
                     time = true;
                 }
                 _ => {
@@ -235,6 +237,14 @@ impl<'de> Visitor<'de> for StepVisitor {
         }
         seen.map(|seen| Step { seen }).ok_or_else(|| A::Error::missing_field("seen"))
     }
+}
+
+/// Checked, but of no use to a map.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "`t` must be a number or null")]
+enum Time {
+    Number(#[expect(dead_code, reason = "only its type matters")] f64),
+    Missing(()),
 }
 
 struct Ids<'a>(Vec<Cow<'a, str>>);
@@ -296,3 +306,6 @@ impl<'de> Visitor<'de> for IdVisitor {
         Ok(Id(Cow::Owned(id.to_string())))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,25 @@
 //! Logs of sightings: which landmarks were seen together, step by step.
+//!
+//! | format | a step | ID |
+//! |---|---|---|
+//! | [`LogFormat::Jsonl`] | a line `{"t": 12.5, "seen": ["A", "B"]}` | string, or integer taken as its decimal text |
+//! | [`LogFormat::Csv`] | rows `step,landmark` that follow each other, under that header | field |
+//! | [`LogFormat::Text`] | a line `A B` | anything without white space |
+//!
+//! Steps are in the order of the file, which is their order in time. Common to all formats:
+//!
+//! - An ID is a text of 1 to [`MAX_ID_BYTES`] bytes; `12` and `"12"` are the same landmark. An ID
+//!   that occurs again within its step counts once ([`LogSummary::duplicates`] tells how often).
+//! - The text is UTF-8, with or without a byte-order mark, lines end in `\n` or `\r\n` and have at
+//!   most [`MAX_LINE_BYTES`] bytes. Compression by gzip or zstd is seen and undone.
+//! - A step in which nothing was seen is `{"seen": []}` or a blank line of plain text; CSV cannot
+//!   say it. Blank lines of JSONL and CSV mean nothing.
+//! - JSONL: `t` may be missing or null; other keys are ignored. CSV: other columns are ignored.
+//!
+//! # Memory and speed
+//!
+//! The text is never held, only the log made of it: 4 bytes a sighting, 8 a step, and the names.
+//! Blocks of 2 MiB are taken apart in parallel; the result does not depend on the number of threads.
 
 mod blocks;
 mod check;
@@ -6,6 +27,7 @@ mod csv;
 mod format;
 mod interner;
 mod jsonl;
+mod lines;
 mod problem;
 mod read;
 mod source;
@@ -18,17 +40,30 @@ use std::path::Path;
 
 pub use check::LogCheck;
 pub use format::LogFormat;
+pub use lines::MAX_ID_BYTES;
 pub use problem::LogProblem;
-pub use read::{MAX_ID_BYTES, MAX_LINE_BYTES};
+pub use read::MAX_LINE_BYTES;
 pub use write::JsonlWriter;
 
 use crate::{LandmarkNames, MapError, Observer, Stage};
 use problem::OnBadLine;
 use read::Reading;
 use source::Source;
-use tokens::{LogBuilder, Tokens};
+use tokens::LogBuilder;
 
 /// A log of sightings, compact: 4 bytes a sighting and 8 a step.
+///
+/// ```
+/// use covimap_map::{LandmarkId, Silent, SightingLog};
+///
+/// let text = r#"{"t": 0, "seen": ["door", "desk"]}
+/// {"t": 1, "seen": ["desk", "lamp", "desk"]}"#;
+/// let log = SightingLog::read_from(text.as_bytes(), "robot.jsonl", None, &Silent)?;
+/// assert_eq!(log.names().iter().collect::<Vec<_>>(), ["door", "desk", "lamp"]);
+/// assert_eq!(log.step(1), [1, 2]);
+/// assert_eq!(log.summary().duplicates, 1);
+/// # Ok::<(), covimap_map::MapError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SightingLog {
     names: LandmarkNames,
@@ -66,10 +101,17 @@ pub struct LogSummary {
 impl SightingLog {
     /// Reads files as one log, in the order given; `-` is standard input.
     ///
+    /// The format is `format`, or what [`LogFormat::from_path`] makes of the name, or JSONL if the
+    /// text begins with `{`. Tells the observer of [`Stage::Read`], counted in bytes on disk.
+    ///
     /// # Errors
     ///
-    /// [`MapError::BadLine`], [`MapError::Io`], [`MapError::UnknownFormat`], [`MapError::NoSteps`],
-    /// [`MapError::Interrupted`].
+    /// - [`MapError::Io`]: a file is missing, a directory, or not readable.
+    /// - [`MapError::UnknownFormat`]: neither the name nor the first character tells the format.
+    /// - [`MapError::BadLine`]: the first line that is no step of its format, is no UTF-8, is longer
+    ///   than [`MAX_LINE_BYTES`], or in which compressed data break off.
+    /// - [`MapError::NoSteps`]: there is no step in any of the files.
+    /// - [`MapError::Interrupted`]: the observer asked for it.
     pub fn read<P: AsRef<Path>>(
         paths: &[P],
         format: Option<LogFormat>,
@@ -77,17 +119,16 @@ impl SightingLog {
     ) -> Result<Self, MapError> {
         let mut reading = Reading::new(OnBadLine::Stop, observer);
         reading.paths(paths, format)?;
-        reading.finish().with_steps(|| {
-            paths.iter().map(|path| path.as_ref().display().to_string()).collect::<Vec<_>>().join(", ")
-        })
+        let names = || paths.iter().map(|path| path.as_ref().display().to_string());
+        reading.finish().with_steps(|| names().collect::<Vec<_>>().join(", "))
     }
 
-    /// Reads a stream; `name` is what messages call it.
+    /// Reads a stream; `name` is what messages call it. Its format is `format`, or JSONL if it
+    /// begins with `{`.
     ///
     /// # Errors
     ///
-    /// [`MapError::BadLine`], [`MapError::Io`], [`MapError::UnknownFormat`], [`MapError::NoSteps`],
-    /// [`MapError::Interrupted`].
+    /// As [`SightingLog::read`].
     pub fn read_from(
         stream: impl Read + Send,
         name: &str,
@@ -101,18 +142,19 @@ impl SightingLog {
         reading.finish().with_steps(|| name.into())
     }
 
-    /// Makes a log of steps held in memory. IDs are taken as they are.
+    /// Makes a log of steps held in memory. IDs are taken as they are, without a limit.
     pub fn from_steps<I>(steps: I) -> Self
     where
         I: IntoIterator,
         I::Item: IntoIterator<Item: AsRef<str>>,
     {
         let mut builder = LogBuilder::new();
-        let mut tokens = Tokens::default();
         for step in steps {
-            tokens.push_step(&builder.names, step);
+            for id in step {
+                builder.push_sighting(id.as_ref());
+            }
+            builder.end_step();
         }
-        builder.absorb(vec![tokens]);
         Self::from_builder(builder, 0)
     }
 
@@ -177,3 +219,6 @@ impl SightingLog {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,8 @@
 //! absorbed one by one, in file order: that gives new names their final numbers in the order of
 //! first appearance, whatever the number of threads and the size of the blocks.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::interner::{Interner, NameHash};
@@ -25,17 +27,21 @@ pub(super) struct Tokens {
 }
 
 impl Tokens {
-    /// Appends a step: sorted, each landmark once.
-    pub(super) fn push_step<S: AsRef<str>>(&mut self, known: &Interner, ids: impl IntoIterator<Item = S>) {
-        let start = self.seen.len();
-        for id in ids {
-            let id = id.as_ref();
-            let hash = NameHash::of(id);
-            let number = known.find(hash, id).unwrap_or_else(|| known.len() + self.fresh.intern(hash, id));
-            self.seen.push(number);
+    /// Appends steps; step k has the IDs `ids[ends[k - 1]..ends[k]]`.
+    pub(super) fn push_steps(&mut self, known: &Interner, ids: &[Cow<'_, str>], ends: &[usize]) {
+        let hashes: Vec<_> = ids.iter().map(|id| NameHash::of(id)).collect();
+        let mut numbers =
+            known.find_all(&hashes, ids).zip(&hashes).zip(ids).map(|((found, &hash), id)| {
+                found.unwrap_or_else(|| known.len() + self.fresh.intern(hash, id))
+            });
+        let mut from = 0;
+        for &end in ends {
+            let start = self.seen.len();
+            self.seen.extend(numbers.by_ref().take(end - from));
+            self.duplicates += sort_and_dedup(&mut self.seen, start);
+            self.ends.push(self.seen.len());
+            from = end;
         }
-        self.duplicates += sort_and_dedup(&mut self.seen, start);
-        self.ends.push(self.seen.len());
     }
 
     /// Replaces provisional numbers (those from `known` on) by final ones.

@@ -28,7 +28,8 @@ impl<W: Write> JsonlWriter<W> {
         Self { out: BufWriter::with_capacity(BUFFER, out) }
     }
 
-    /// Writes a step: time `t` in seconds or whatever unit the log has, and the landmarks seen.
+    /// Writes a step: its time `t`, in any unit, and the landmarks seen. IDs that are empty or
+    /// longer than [`crate::MAX_ID_BYTES`] are written too, but not read again.
     ///
     /// # Errors
     ///
@@ -39,12 +40,12 @@ impl<W: Write> JsonlWriter<W> {
         t: Option<f64>,
         ids: impl IntoIterator<Item = S>,
     ) -> io::Result<()> {
+        if let Some(t) = t.filter(|t| !t.is_finite()) {
+            let what = format!("time {t} of a step is not finite; leave it out");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        }
         self.out.write_all(b"{")?;
         if let Some(t) = t {
-            if !t.is_finite() {
-                let what = format!("time {t} of a step is not finite");
-                return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
-            }
             self.out.write_all(b"\"t\": ")?;
             serde_json::to_writer(&mut self.out, &t)?;
             self.out.write_all(b", ")?;
@@ -85,5 +86,56 @@ impl SightingLog {
             writer.step(None, step.iter().map(|&number| self.names().name(LandmarkId(number))))?;
         }
         writer.finish()?.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{LogFormat, Silent};
+
+    #[test]
+    fn a_time_that_json_cannot_say_is_refused_before_anything_is_written() {
+        let mut writer = JsonlWriter::new(Vec::new());
+        for t in [f64::NAN, f64::INFINITY] {
+            let error = writer.step(Some(t), ["A"]).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+        }
+        writer.step(Some(-0.5), Vec::<&str>::new()).unwrap();
+        assert_eq!(writer.finish().unwrap(), b"{\"t\": -0.5, \"seen\": []}\n");
+    }
+
+    #[test]
+    fn what_the_output_says_comes_through() {
+        let mut small = [0; 10];
+        let mut writer = JsonlWriter::new(&mut small[..]);
+        writer.step(None, ["A"]).unwrap();
+        assert_eq!(writer.finish().unwrap_err().kind(), io::ErrorKind::WriteZero);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_is_read_again(
+            steps in prop::collection::vec((prop::option::of(any::<f64>()), prop::collection::vec(".{1,6}", 0..5)), 1..20),
+        ) {
+            let mut writer = JsonlWriter::new(Vec::new());
+            for (t, ids) in &steps {
+                writer.step(t.filter(|t| t.is_finite()), ids).unwrap();
+            }
+            let text = writer.finish().unwrap();
+            let read = |text: &[u8]| SightingLog::read_from(text, "log", Some(LogFormat::Jsonl), &Silent).unwrap();
+            let log = read(&text);
+            let held = SightingLog::from_steps(steps.iter().map(|(_, ids)| ids));
+            prop_assert_eq!(log.names(), held.names());
+            prop_assert!(log.iter().eq(held.iter()));
+
+            let mut again = Vec::new();
+            log.write_jsonl(&mut again).unwrap();
+            let again = read(&again);
+            prop_assert_eq!(log.names(), again.names());
+            prop_assert!(log.iter().eq(again.iter()));
+        }
     }
 }
