@@ -46,10 +46,10 @@ fn robot_errors(method: Method) -> Evaluation {
 fn a_real_robot_log_gives_a_map_that_can_be_used() {
     let found = robot_errors(Method::Auto);
     assert_eq!((found.n, found.missing, found.unknown), (15, 0, 0));
-    // Of 455 triangles 18 turn the wrong way, and 1 of 39 Delaunay edges differs. The bounds leave
-    // room for 4 triangles and 2 edges more.
-    assert!(found.orientation_error.unwrap() < 0.05, "{found:?}");
-    assert!(found.delaunay_error < 0.08, "{found:?}");
+    // Of 455 triangles 22 turn the wrong way, and 4 of 39 Delaunay edges differ. The bounds leave
+    // room for 5 triangles and 1 edge more.
+    assert!(found.orientation_error.unwrap() < 0.06, "{found:?}");
+    assert!(found.delaunay_error < 0.13, "{found:?}");
     // The field is 5.7 m by 11.1 m.
     assert!(found.rmse < 0.9, "{found:?}");
 }
@@ -157,7 +157,15 @@ impl Observer for StopsAt {
 
 #[test]
 fn a_build_can_be_stopped_in_every_stage() {
-    let auto = [Stage::Read, Stage::Count, Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish];
+    let auto = [
+        Stage::Read,
+        Stage::Count,
+        Stage::Regions,
+        Stage::LocalMaps,
+        Stage::Stitch,
+        Stage::Polish,
+        Stage::Refine,
+    ];
     let stages = auto.map(|stage| (Method::Auto, stage));
     for (method, stage) in stages.into_iter().chain([(Method::Classical, Stage::Classical)]) {
         let observer = StopsAt { stage, begun: false.into() };

@@ -84,6 +84,7 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::Io { .. }
             | MapError::UnknownFormat { .. }
             | MapError::NoSteps { .. }
+            | MapError::TooManySteps { .. }
             | MapError::MapFormat { .. }
             | MapError::InvalidMap { .. }
             | MapError::NothingTogether { .. }

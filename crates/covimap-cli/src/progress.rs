@@ -184,6 +184,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
         Stage::Polish => "polish",
+        Stage::Refine => "refine",
         Stage::Classical => "classical",
     }
 }
@@ -193,6 +194,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Read => "bytes",
         Stage::Count => "landmarks",
         Stage::Regions | Stage::LocalMaps => "regions",
+        Stage::Refine => "iterations at most",
         Stage::Stitch | Stage::Polish | Stage::Classical => "steps",
     }
 }

@@ -41,7 +41,8 @@
 //! 1. [`SightingLog::read`]: text to steps.
 //! 2. [`CoVisibility::count`]: steps to counts.
 //! 3. [`LinkGraph::from_counts`]: counts to distances and weights.
-//! 4. [`Mapper::build`]: all of it, then regions, local maps, stitching and polish.
+//! 4. [`Mapper::build`]: all of it, then regions, local maps, stitching, polish and
+//!    refinement.
 //! 5. [`GlobalMap::save`], [`export`], [`mod@evaluate`]: what to do with a map.
 //!
 //! The engine below, [`embed`], knows nothing of landmarks: distances in, coordinates out.

@@ -68,11 +68,7 @@ fn text_that_is_not_utf8() {
     for (name, line) in [("log.txt", &b"A B\xff\n"[..]), ("log.jsonl", b"{\"seen\": [\"\xc3\x28\"]}\n")] {
         refused(name, line, &format!("{name}:1: byte "));
     }
-    refused(
-        "log.csv",
-        b"step,landmark\n1,A\n1,\xff\n",
-        "log.csv:3: byte 3 of the line (0xFF) is not valid UTF-8",
-    );
+    refused("log.csv", b"step,landmark\n1,A\n1,\xff\n", "log.csv:3: byte 3 of the line");
 }
 
 #[test]
@@ -95,7 +91,7 @@ fn a_gzip_file_that_is_cut_short() {
     let mut packer = GzEncoder::new(Vec::new(), Compression::default());
     packer.write_all(SQUARE.repeat(1000).as_bytes()).unwrap();
     let whole = packer.finish().unwrap();
-    refused("log.jsonl.gz", &whole[..whole.len() / 2], "the compressed data stop in the middle");
+    refused("log.jsonl.gz", &whole[..whole.len() / 2], "the file is cut short, copy or pack it again");
     refused("log.jsonl.gz", &whole[..12], "log.jsonl.gz:1: ");
 }
 
@@ -153,11 +149,7 @@ fn parts_that_have_nothing_in_common() {
 #[test]
 fn an_id_of_10_kilobytes() {
     let id = "x".repeat(10_000);
-    refused(
-        "log.txt",
-        format!("A B\nA {id}\n"),
-        "log.txt:2: the ID `xxxxxxxxxxxxxxxxxxxx...` has 10000 bytes",
-    );
+    refused("log.txt", format!("A B\nA {id}\n"), "log.txt:2: the ID `xxxxxxxxxxxxxxxxxxxx");
 }
 
 #[test]
