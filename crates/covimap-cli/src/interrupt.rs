@@ -23,6 +23,7 @@ pub fn listen() -> anyhow::Result<()> {
             complain("covimap: interrupted");
             process::exit(exit::INTERRUPTED.into());
         }
+        complain("covimap: stopping; once more stops at once");
     })
     .context("cannot listen for Ctrl-C")
 }

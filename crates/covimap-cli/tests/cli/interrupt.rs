@@ -38,7 +38,7 @@ fn an_interrupted_build_leaves_nothing_behind() {
         let output = run.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130));
         let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(said, "covimap: interrupted\n");
+        assert_eq!(said, "covimap: stopping; once more stops at once\ncovimap: interrupted\n");
         assert_eq!(String::from_utf8(output.stdout).unwrap(), "");
         assert!(scratch.names().is_empty());
     }
