@@ -21,8 +21,8 @@
 //! # Algorithm
 //! Expectation-maximisation. The posterior of each step's place is taken on a grid around the
 //! landmarks seen ([`posterior`]); then every landmark makes one Fisher-scoring step in position
-//! and detectability, and `s` one in common ([`scoring`]). `R` is fitted first and then held: it
-//! fixes the unit.
+//! and detectability ([`scoring`]), and `s` one in common ([`sensor`]). `R` is fitted first and
+//! then held: it fixes the unit.
 //!
 //! # Complexity
 //! `O(k c)` a step and iteration, `k` landmarks near and `c` grid cells (about 80). Equal sets are
@@ -39,6 +39,7 @@
 
 mod posterior;
 mod scoring;
+mod sensor;
 mod sets;
 
 use std::sync::Mutex;
@@ -48,28 +49,23 @@ use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
 use posterior::{Posterior, Workspace};
-use scoring::{Scores, SharedScores};
+use scoring::{ScoreBoard, Scores};
+pub(crate) use sensor::Sensor;
+use sensor::SensorScores;
 pub(crate) use sets::SeenSets;
 
 /// Sets of one parallel task.
 const CHUNK: usize = 2048;
 /// Tasks whose scores are held at the same time.
 const WAVE: usize = 64;
-/// Iterations that fit the sensor to the map before landmarks move.
-const SENSOR_ITERATIONS: usize = 4;
-/// Sets, evenly spread over the log, that this fit looks at: a few shared numbers need no more.
-const SENSOR_SETS: usize = 20_000;
+/// Steps of the sensor before landmarks move.
+const SENSOR_STEPS: usize = 5;
+/// Sets, evenly spread over the log, that the sensor is fitted to: two numbers need no more.
+const SENSOR_SETS: usize = 4096;
+/// Longest move of a landmark in one iteration, as a share of the range.
+const LONGEST_MOVE: f64 = 0.2;
 /// Done when the landmarks move by less than this share of the range in the mean.
 const STILL: f64 = 2e-3;
-
-/// What the log says of the sensor, in map units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sensor {
-    /// Range within which a landmark is seen.
-    pub range: f64,
-    /// Width of the range's soft edge.
-    pub edge: f64,
-}
 
 /// Positions and detectabilities under refinement.
 pub(crate) struct Model {
@@ -88,26 +84,37 @@ pub(crate) fn refine(
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
     let range = half_far_link(graph, &start);
-    let sensor = Sensor { range, edge: 0.15 * range };
-    let mut model = Model { detectability: vec![0.9; start.len()], points: start, sensor };
-    let sample = sets.len().div_ceil(SENSOR_SETS).max(1);
-    for _ in 0..SENSOR_ITERATIONS {
-        let (landmarks, shared) = expectation(graph, sets, sample, &model, observer)?;
-        model.update_detectability(&landmarks);
-        model.update_edge(&shared);
-        model.update_range(&shared);
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
+    let mut model = Model { detectability: Vec::new(), points: start, sensor };
+    for _ in 0..SENSOR_STEPS {
+        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
+        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
     }
     for _ in 0..iterations {
-        let (landmarks, shared) = expectation(graph, sets, 1, &model, observer)?;
-        let moved = model.update_points(&landmarks);
-        model.update_detectability(&landmarks);
-        model.update_edge(&shared);
+        let scores = landmark_scores(graph, sets, &model, observer)?;
+        let moved = model.move_landmarks(&scores);
+        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, false);
         observer.advanced(1);
         if moved < STILL * model.sensor.range {
             break;
         }
     }
     Ok(model)
+}
+
+impl Model {
+    /// One Fisher-scoring step of every landmark; returns the mean length of the moves.
+    fn move_landmarks(&mut self, scores: &[Scores]) -> f64 {
+        let longest = LONGEST_MOVE * self.sensor.range;
+        let mut length = 0.0;
+        for ((point, p), scores) in self.points.iter_mut().zip(&mut self.detectability).zip(scores) {
+            let step = scores.step(longest);
+            *point = [point[0] + step[0], point[1] + step[1]];
+            *p = scores.improved_detectability(*p, self.sensor.detectability);
+            length += step[0].hypot(step[1]);
+        }
+        length / scores.len() as f64
+    }
 }
 
 /// Half the length of a long link: two landmarks at twice the range are just seen together.
@@ -127,42 +134,52 @@ fn half_far_link(graph: &LinkGraph, points: &[Point]) -> f64 {
     length / 2.0
 }
 
-/// Scores of all landmarks and of the sensor under the present model, over every `stride`-th set.
-fn expectation(
+/// Scores of the sensor under the present model, over a sample of the sets.
+fn sensor_scores(graph: &LinkGraph, sets: &SeenSets, model: &Model) -> SensorScores {
+    let posterior = Posterior::new(graph, model);
+    let mut workspace = Workspace::new(graph.landmarks());
+    let mut scores = SensorScores::default();
+    for set in (0..sets.len()).step_by(sets.len().div_ceil(SENSOR_SETS).max(1)) {
+        let step = posterior.of(sets.seen(set), &mut workspace);
+        scores.gather(&step, sets.times(set), model.sensor);
+    }
+    scores
+}
+
+/// Scores of all landmarks under the present model, over all sets.
+fn landmark_scores(
     graph: &LinkGraph,
     sets: &SeenSets,
-    stride: usize,
     model: &Model,
     observer: &dyn Observer,
-) -> Result<(Vec<Scores>, SharedScores), MapError> {
+) -> Result<Vec<Scores>, MapError> {
+    let n = graph.landmarks();
     let posterior = Posterior::new(graph, model);
-    let pool = Mutex::new(Vec::new());
-    let mut landmarks = vec![Scores::default(); graph.landmarks()];
-    let mut shared = SharedScores::default();
-    let chosen: Vec<usize> = (0..sets.len()).step_by(stride).collect();
-    for wave in chosen.chunks(CHUNK * WAVE) {
+    let idle = Mutex::new(Vec::new());
+    let mut landmarks = vec![Scores::default(); n];
+    for wave in (0..sets.len()).step_by(CHUNK * WAVE) {
         if observer.interrupted() {
             return Err(MapError::Interrupted);
         }
-        let scored: Vec<_> = wave
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                let idle = pool.lock().expect("no worker panics (bug in covimap)").pop();
-                let mut workspace = idle.unwrap_or_else(|| Workspace::new(graph.landmarks()));
-                for &set in chunk {
-                    posterior.score(sets.seen(set), sets.times(set), &mut workspace);
+        let scored: Vec<_> = (wave..sets.len().min(wave + CHUNK * WAVE))
+            .into_par_iter()
+            .step_by(CHUNK)
+            .map(|first| {
+                let idling = idle.lock().expect("no worker panics (bug in covimap)").pop();
+                let (mut workspace, mut board) =
+                    idling.unwrap_or_else(|| (Workspace::new(n), ScoreBoard::new(n)));
+                for set in first..sets.len().min(first + CHUNK) {
+                    let step = posterior.of(sets.seen(set), &mut workspace);
+                    board.gather(&step, sets.times(set), posterior.curve());
                 }
-                let scored = workspace.take();
-                pool.lock().expect("no worker panics (bug in covimap)").push(workspace);
-                scored
+                let scores = board.take();
+                idle.lock().expect("no worker panics (bug in covimap)").push((workspace, board));
+                scores
             })
             .collect();
-        for (touched, sensor) in scored {
-            for (landmark, scores) in touched {
-                landmarks[landmark as usize].add(&scores);
-            }
-            shared.add(&sensor);
+        for (landmark, scores) in scored.into_iter().flatten() {
+            landmarks[landmark as usize].add(&scores);
         }
     }
-    Ok((landmarks, shared))
+    Ok(landmarks)
 }

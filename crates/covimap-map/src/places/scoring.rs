@@ -1,44 +1,21 @@
-//! Scores and Fisher information, gathered over steps and places, and the updates made of them.
+//! Score and Fisher information of every landmark, gathered over steps and places, and the moves
+//! made of them.
 //!
 //! With `r = (seen - P) / (P (1 - P))` and a derivative `D` of `P`, every (step, place) of
-//! posterior weight `g` adds `g r D` to the score and `g D^2 / (P (1 - P))` to the information.
-//! The derivatives, with `v` the visibility curve and `u` the unit vector from place to landmark:
-//!
-//! | unknown | derivative of `P` |
-//! |---|---|
-//! | position `x` | `-p v (1 - v) / s u` |
-//! | detectability `p` | `v` |
-//! | range `R` | `p v (1 - v) / s` |
-//! | edge `s`, as `ln s` | `p v (1 - v) (d - R) / s` |
+//! posterior weight `g` adds `g r D` to the score and `g D D' / (P (1 - P))` to the information.
+//! `D = -p v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
+//! detectability `p`.
 
 use covimap_embed::Point;
-use rayon::prelude::*;
 
-use super::{Model, Sensor};
+use super::posterior::Step;
+use super::sensor::{Curve, DETECTABILITY, probability};
 
-/// Longest move of a landmark in one iteration, as a share of the range.
-const LONGEST_MOVE: f64 = 0.2;
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
 const RIDGE: f64 = 0.05;
-/// What is believed of a detectability before any sighting: its mean, and as how many sightings'
-/// information that counts.
-const PRIOR: (f64, f64) = (0.9, 100.0);
-/// Bounds of a detectability.
-const DETECTABILITY: (f64, f64) = (0.02, 0.995);
-/// Narrowest edge, as a share of the range: the grid resolves no finer.
-const NARROWEST: f64 = 0.03;
-
-/// One landmark as seen, or not, from one place.
-pub(super) struct Term {
-    pub seen: bool,
-    pub probability: f64,
-    pub detectability: f64,
-    pub visibility: f64,
-    /// From the place to the landmark.
-    pub offset: Point,
-    pub distance: f64,
-}
+/// Information that the common detectability counts for against a landmark's own sightings.
+const PRIOR_INFORMATION: f64 = 100.0;
 
 /// Scores of one landmark.
 #[derive(Debug, Clone, Copy, Default)]
@@ -50,42 +27,57 @@ pub(super) struct Scores {
     detectability_information: f64,
 }
 
-/// Scores of what all landmarks share.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct SharedScores {
-    range: [f64; 2],
-    log_edge: [f64; 2],
-    pub log_likelihood: f64,
+/// Scores of the landmarks that a task has touched.
+pub(super) struct ScoreBoard {
+    scores: Vec<Scores>,
+    touched: Vec<u32>,
+}
+
+impl ScoreBoard {
+    pub fn new(landmarks: usize) -> Self {
+        Self { scores: vec![Scores::default(); landmarks], touched: Vec::new() }
+    }
+
+    /// Adds `times` steps with the posterior of their place.
+    pub fn gather(&mut self, step: &Step, times: f64, curve: &Curve) {
+        for witness in step.witnesses {
+            let seen = f64::from(u8::from(witness.seen));
+            let p = witness.detectability;
+            let mut own = Scores::default();
+            for &(place, weight) in step.places {
+                let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
+                let [v, slope] = curve.at(dx * dx + dy * dy);
+                let probability = probability(p, v);
+                let information = times * weight / (probability * (1.0 - probability));
+                let surprise = information * (seen - probability);
+                let by_offset = p * slope;
+                own.position[0] -= surprise * by_offset * dx;
+                own.position[1] -= surprise * by_offset * dy;
+                let square = information * by_offset * by_offset;
+                own.information[0] += square * dx * dx;
+                own.information[1] += square * dx * dy;
+                own.information[2] += square * dy * dy;
+                own.detectability += surprise * v;
+                own.detectability_information += information * v * v;
+            }
+            let sum = &mut self.scores[witness.landmark as usize];
+            // Any step adds information on the detectability.
+            if sum.detectability_information <= 0.0 {
+                self.touched.push(witness.landmark);
+            }
+            sum.add(&own);
+        }
+    }
+
+    /// The scores gathered since the last call, by landmark.
+    pub fn take(&mut self) -> Vec<(u32, Scores)> {
+        self.touched.sort_unstable();
+        let take = |landmark: u32| (landmark, std::mem::take(&mut self.scores[landmark as usize]));
+        self.touched.drain(..).map(take).collect()
+    }
 }
 
 impl Scores {
-    /// Whether nothing was gathered: any term adds information on the detectability.
-    pub fn is_empty(&self) -> bool {
-        self.detectability_information <= 0.0
-    }
-
-    pub fn gather(&mut self, term: &Term, weight: f64, sensor: Sensor, shared: &mut SharedScores) {
-        let information = weight / (term.probability * (1.0 - term.probability));
-        let surprise = information * (f64::from(u8::from(term.seen)) - term.probability);
-        let slope = term.detectability * term.visibility * (1.0 - term.visibility) / sensor.edge;
-        if term.distance > 0.0 {
-            let u = [term.offset[0] / term.distance, term.offset[1] / term.distance];
-            let (score, square) = (-surprise * slope, information * slope * slope);
-            self.position[0] += score * u[0];
-            self.position[1] += score * u[1];
-            self.information[0] += square * u[0] * u[0];
-            self.information[1] += square * u[0] * u[1];
-            self.information[2] += square * u[1] * u[1];
-        }
-        self.detectability += surprise * term.visibility;
-        self.detectability_information += information * term.visibility * term.visibility;
-        shared.range[0] += surprise * slope;
-        shared.range[1] += information * slope * slope;
-        let by_edge = slope * (term.distance - sensor.range);
-        shared.log_edge[0] += surprise * by_edge;
-        shared.log_edge[1] += information * by_edge * by_edge;
-    }
-
     pub fn add(&mut self, other: &Self) {
         self.position[0] += other.position[0];
         self.position[1] += other.position[1];
@@ -97,7 +89,7 @@ impl Scores {
     }
 
     /// The Fisher-scoring step of the position, no longer than allowed.
-    fn step(&self, longest: f64) -> Point {
+    pub fn step(&self, longest: f64) -> Point {
         let [xx, xy, yy] = self.information;
         let ridge = RIDGE * (xx + yy);
         let (xx, yy) = (xx + ridge, yy + ridge);
@@ -110,48 +102,11 @@ impl Scores {
         let length = step[0].hypot(step[1]);
         if length > longest { step.map(|c| c * longest / length) } else { step }
     }
-}
 
-impl SharedScores {
-    pub fn add(&mut self, other: &Self) {
-        for k in 0..2 {
-            self.range[k] += other.range[k];
-            self.log_edge[k] += other.log_edge[k];
-        }
-        self.log_likelihood += other.log_likelihood;
-    }
-}
-
-fn scoring_step([score, information]: [f64; 2], most: f64) -> f64 {
-    if information > 0.0 { (score / information).clamp(-most, most) } else { 0.0 }
-}
-
-impl Model {
-    /// Moves every landmark and returns the mean length of the moves.
-    pub(super) fn update_points(&mut self, landmarks: &[Scores]) -> f64 {
-        let longest = LONGEST_MOVE * self.sensor.range;
-        let steps: Vec<Point> = landmarks.par_iter().map(|scores| scores.step(longest)).collect();
-        for (point, step) in self.points.iter_mut().zip(&steps) {
-            *point = [point[0] + step[0], point[1] + step[1]];
-        }
-        steps.iter().map(|step| step[0].hypot(step[1])).sum::<f64>() / steps.len() as f64
-    }
-
-    pub(super) fn update_detectability(&mut self, landmarks: &[Scores]) {
-        let (mean, weight) = PRIOR;
-        for (p, scores) in self.detectability.iter_mut().zip(landmarks) {
-            let step =
-                (scores.detectability + weight * (mean - *p)) / (scores.detectability_information + weight);
-            *p = (*p + step).clamp(DETECTABILITY.0, DETECTABILITY.1);
-        }
-    }
-
-    pub(super) fn update_edge(&mut self, shared: &SharedScores) {
-        let edge = self.sensor.edge * scoring_step(shared.log_edge, 0.3).exp();
-        self.sensor.edge = edge.max(NARROWEST * self.sensor.range);
-    }
-
-    pub(super) fn update_range(&mut self, shared: &SharedScores) {
-        self.sensor.range += scoring_step(shared.range, 0.1 * self.sensor.range);
+    /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.
+    pub fn improved_detectability(&self, p: f64, common: f64) -> f64 {
+        let score = self.detectability + PRIOR_INFORMATION * (common - p);
+        let step = score / (self.detectability_information + PRIOR_INFORMATION);
+        (p + step).clamp(DETECTABILITY.0, DETECTABILITY.1)
     }
 }

@@ -1,0 +1,119 @@
+//! The sensor that all landmarks share: range and edge, and how they are fitted.
+
+use super::posterior::Step;
+
+/// Probability `e` of a sighting that should not be.
+pub(super) const FALSE_SIGHTING: f64 = 1e-3;
+/// Narrowest edge, as a share of the range: the grid of places resolves no finer.
+const NARROWEST: f64 = 0.03;
+/// Largest relative change of the range in one step.
+const RANGE_STEP: f64 = 0.1;
+/// Largest change of the edge's logarithm in one step.
+const EDGE_STEP: f64 = 0.3;
+/// Largest change of the common detectability in one step.
+const DETECTABILITY_STEP: f64 = 0.2;
+/// Bounds of a detectability.
+pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
+/// Entries of the table of the visibility curve over squared distance.
+const TABLE: usize = 4096;
+
+/// What the log says of the sensor, in map units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sensor {
+    /// Range `R` within which a landmark is seen.
+    pub range: f64,
+    /// Width `s` of the range's soft edge.
+    pub edge: f64,
+    /// Detectability of a landmark of which nothing else is known.
+    pub detectability: f64,
+}
+
+impl Sensor {
+    /// The visibility curve `v(d) = 1 / (1 + exp((d - R) / s))`.
+    fn visibility(self, distance: f64) -> f64 {
+        1.0 / (1.0 + ((distance - self.range) / self.edge).exp())
+    }
+}
+
+/// Eq. (1): probability of seeing a landmark of this detectability where the curve is `visibility`.
+pub(super) fn probability(detectability: f64, visibility: f64) -> f64 {
+    FALSE_SIGHTING + (detectability - FALSE_SIGHTING) * visibility
+}
+
+/// The visibility curve over squared distance: roots and exponentials are paid for once.
+pub(super) struct Curve {
+    /// `v` and `v (1 - v) / (s d)`, the slope of `-v` along `d` over `d`.
+    entries: Vec<[f64; 2]>,
+    per_square: f64,
+}
+
+impl Curve {
+    /// Tabulates the curve up to a distance.
+    pub fn new(sensor: Sensor, farthest: f64) -> Self {
+        let per_square = TABLE as f64 / (farthest * farthest);
+        let entry = |k: usize| {
+            // The first entry covers half a step; anywhere in it is as good.
+            let distance = ((k as f64).max(0.25) / per_square).sqrt();
+            let v = sensor.visibility(distance);
+            [v, v * (1.0 - v) / (sensor.edge * distance)]
+        };
+        Self { entries: (0..=TABLE).map(entry).collect(), per_square }
+    }
+
+    pub fn at(&self, square: f64) -> [f64; 2] {
+        // Adding 2^52 leaves the rounded number in the low bits: a cast that costs no branch.
+        let nearest = (square * self.per_square).min(TABLE as f64) + 4_503_599_627_370_496.0;
+        self.entries[(nearest.to_bits() & 0xffff) as usize]
+    }
+}
+
+/// Score and information of the range, of the logarithm of the edge and of a change of all
+/// detectabilities.
+///
+/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
+/// `p`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct SensorScores {
+    range: [f64; 2],
+    log_edge: [f64; 2],
+    detectability: [f64; 2],
+}
+
+impl SensorScores {
+    /// Adds `times` steps with the posterior of their place.
+    pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor) {
+        for witness in step.witnesses {
+            for &(place, weight) in step.places {
+                let distance = (witness.at[0] - place[0]).hypot(witness.at[1] - place[1]);
+                let v = sensor.visibility(distance);
+                let p = probability(witness.detectability, v);
+                let information = times * weight / (p * (1.0 - p));
+                let surprise = information * (f64::from(u8::from(witness.seen)) - p);
+                let by_range = witness.detectability * v * (1.0 - v) / sensor.edge;
+                let by_edge = by_range * (distance - sensor.range);
+                self.range[0] += surprise * by_range;
+                self.range[1] += information * by_range * by_range;
+                self.log_edge[0] += surprise * by_edge;
+                self.log_edge[1] += information * by_edge * by_edge;
+                self.detectability[0] += surprise * v;
+                self.detectability[1] += information * v * v;
+            }
+        }
+    }
+
+    /// The sensor after a Fisher-scoring step; the range only if it is free.
+    pub fn improve(&self, sensor: Sensor, range_free: bool) -> Sensor {
+        let step = |[score, information]: [f64; 2], most: f64| {
+            if information > 0.0 { (score / information).clamp(-most, most) } else { 0.0 }
+        };
+        let moved = if range_free { step(self.range, RANGE_STEP * sensor.range) } else { 0.0 };
+        let range = sensor.range + moved;
+        let edge = sensor.edge * step(self.log_edge, EDGE_STEP).exp();
+        let detectability = sensor.detectability + step(self.detectability, DETECTABILITY_STEP);
+        Sensor {
+            range,
+            edge: edge.max(NARROWEST * range),
+            detectability: detectability.clamp(DETECTABILITY.0, DETECTABILITY.1),
+        }
+    }
+}
