@@ -38,21 +38,22 @@ fn the_tour_can_be_taken_and_its_numbers_are_right() {
     let scratch = Scratch::new();
     assert_eq!(take_the_tour(&scratch), 8);
     let truth = data("mrclam-1.truth.csv");
-    let of_100 = |map: &str| {
+    let errors = |map: &str| {
         let found = scratch.succeeds(&["evaluate", map, truth.to_str().unwrap(), "--json"]).json();
-        let number = |key: &str| found[key].as_f64().unwrap();
-        (100.0 * number("orientation_error"), 100.0 * number("delaunay_error"), number("rmse"))
+        ["orientation_error", "delaunay_error", "rmse"].map(|key| found[key].as_f64().unwrap())
     };
-    let (auto, classical) = (of_100("mrclam-1.map.json"), of_100("classical.map.json"));
+    let [triangles, edges, off] = errors("mrclam-1.map.json");
+    assert!(triangles < 0.06, "about one triangle in twenty: {triangles}");
+    assert!(edges < 0.11, "at most one edge in ten: {edges}");
+    assert!(off < 1.0, "less than a metre: {off}");
+    let [triangles, edges, off] = errors("classical.map.json");
+    let classical = format!(
+        "has {:.0} of 100 triangles and {:.0} of 100 edges wrong, and is {off:.1} m off",
+        100.0 * triangles,
+        100.0 * edges
+    );
     let text = readme().split_whitespace().collect::<Vec<_>>().join(" ");
-    for said in [
-        format!("{:.0} of 100 triangles of posts turn the wrong way", auto.0),
-        format!("{:.0} of 100 Delaunay edges differ", auto.1),
-        format!("after the best fit a post lies {:.1} m off", auto.2),
-        format!("gets {:.0} of 100 and {:.0} of 100", classical.0, classical.1),
-    ] {
-        assert!(text.contains(&said), "the README does not say: {said}");
-    }
+    assert!(text.contains(&classical), "the README does not say: {classical}");
 }
 
 #[test]
