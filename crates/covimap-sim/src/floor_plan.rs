@@ -1,0 +1,162 @@
+//! Free space as tiles, and the walls and openings that follow from them.
+//!
+//! A floor is a set of rectangles whose insides do not meet. Where the edges of two tiles touch, the way
+//! is open unless a thin partition stands there; every other piece of edge is a wall.
+
+use crate::geometry::{Point, Rect, Segment};
+
+/// An opening between two tiles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Portal {
+    /// The two tiles, by number.
+    pub tiles: [usize; 2],
+    /// The opening itself, parallel to an axis.
+    pub opening: Segment,
+}
+
+/// The floor of a world: where one can stand, what blocks the way, and where one tile leads to the next.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FloorPlan {
+    tiles: Vec<Rect>,
+    walls: Vec<Segment>,
+    portals: Vec<Portal>,
+}
+
+/// A tile's edge or a partition on the line `coordinate[axis] = line`, from `low` to `high` along it.
+#[derive(Clone, Copy)]
+struct Edge {
+    line: f64,
+    low: f64,
+    high: f64,
+    role: Role,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Role {
+    /// The tile with this number lies below the line.
+    Below(usize),
+    /// The tile with this number lies above the line.
+    Above(usize),
+    /// A thin wall on the line.
+    Partition,
+}
+
+impl FloorPlan {
+    /// Works out walls and portals.
+    ///
+    /// Tiles may touch but not overlap. Edges that touch, and partitions, must lie on bit-equal
+    /// coordinates. Time `O(n log n + sum k^2)` for `n` edges of which `k` share a line.
+    #[must_use]
+    pub fn new(tiles: Vec<Rect>, partitions: &[Segment]) -> Self {
+        let mut plan = Self { tiles, walls: Vec::new(), portals: Vec::new() };
+        for axis in 0..2 {
+            let mut edges = plan.edges(axis, partitions);
+            edges.sort_by(|a, b| a.line.total_cmp(&b.line).then(a.low.total_cmp(&b.low)));
+            for on_line in edges.chunk_by(|a, b| a.line.total_cmp(&b.line).is_eq()) {
+                plan.settle_line(axis, on_line);
+            }
+        }
+        plan.walls.extend_from_slice(partitions);
+        plan
+    }
+
+    /// The rectangles of free space.
+    #[must_use]
+    pub fn tiles(&self) -> &[Rect] {
+        &self.tiles
+    }
+
+    /// Everything that blocks sight and way.
+    #[must_use]
+    pub fn walls(&self) -> &[Segment] {
+        &self.walls
+    }
+
+    /// The openings between tiles.
+    #[must_use]
+    pub fn portals(&self) -> &[Portal] {
+        &self.portals
+    }
+
+    /// The smallest rectangle around the floor.
+    #[must_use]
+    pub fn bounds(&self) -> Rect {
+        let nothing = Rect { min: [f64::INFINITY; 2], max: [f64::NEG_INFINITY; 2] };
+        self.tiles.iter().fold(nothing, |all, tile| all.union(tile))
+    }
+
+    /// Free area, square metres.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.tiles.iter().map(Rect::area).sum()
+    }
+
+    fn edges(&self, axis: usize, partitions: &[Segment]) -> Vec<Edge> {
+        let along = 1 - axis;
+        let of_tiles = self.tiles.iter().enumerate().flat_map(|(tile, rect)| {
+            let (low, high) = (rect.min[along], rect.max[along]);
+            [
+                Edge { line: rect.max[axis], low, high, role: Role::Below(tile) },
+                Edge { line: rect.min[axis], low, high, role: Role::Above(tile) },
+            ]
+        });
+        let of_partitions =
+            partitions.iter().filter(|wall| wall.a[axis].total_cmp(&wall.b[axis]).is_eq()).map(|wall| Edge {
+                line: wall.a[axis],
+                low: wall.a[along].min(wall.b[along]),
+                high: wall.a[along].max(wall.b[along]),
+                role: Role::Partition,
+            });
+        of_tiles.chain(of_partitions).collect()
+    }
+
+    /// Turns the edges on one line into walls, where only one side has a tile, and portals.
+    fn settle_line(&mut self, axis: usize, edges: &[Edge]) {
+        let segment = |(low, high): (f64, f64)| {
+            let line = edges[0].line;
+            let point = |along: f64| -> Point { if axis == 0 { [line, along] } else { [along, line] } };
+            Segment { a: point(low), b: point(high) }
+        };
+        let with = |wanted: fn(&Role) -> bool| edges.iter().filter(move |edge| wanted(&edge.role));
+        let below = || with(|role| matches!(role, Role::Below(_)));
+        let above = || with(|role| matches!(role, Role::Above(_)));
+        let partitions = || with(|role| matches!(role, Role::Partition)).map(|edge| (edge.low, edge.high));
+        for edge in below() {
+            let rest = without((edge.low, edge.high), above().map(|other| (other.low, other.high)));
+            self.walls.extend(rest.into_iter().map(segment));
+        }
+        for edge in above() {
+            let rest = without((edge.low, edge.high), below().map(|other| (other.low, other.high)));
+            self.walls.extend(rest.into_iter().map(segment));
+        }
+        for lower in below() {
+            for upper in above() {
+                let (Role::Below(first), Role::Above(second)) = (lower.role, upper.role) else { continue };
+                let shared = (lower.low.max(upper.low), lower.high.min(upper.high));
+                let open = without(shared, partitions());
+                self.portals.extend(
+                    open.into_iter().map(|part| Portal { tiles: [first, second], opening: segment(part) }),
+                );
+            }
+        }
+    }
+}
+
+/// What is left of the interval after all cuts, which come in ascending order of their lower ends.
+fn without(interval: (f64, f64), cuts: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    let (mut low, high) = interval;
+    let mut rest = Vec::new();
+    for (cut_low, cut_high) in cuts {
+        if cut_high <= low || cut_low >= high {
+            continue;
+        }
+        if cut_low > low {
+            rest.push((low, cut_low));
+        }
+        low = cut_high;
+    }
+    if low < high {
+        rest.push((low, high));
+    }
+    rest
+}
