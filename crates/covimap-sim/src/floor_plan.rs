@@ -18,6 +18,7 @@ pub struct Portal {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FloorPlan {
     tiles: Vec<Rect>,
+    partitions: Vec<Segment>,
     walls: Vec<Segment>,
     portals: Vec<Portal>,
 }
@@ -47,17 +48,40 @@ impl FloorPlan {
     /// Tiles may touch but not overlap. Edges that touch, and partitions, must lie on bit-equal
     /// coordinates. Time `O(n log n + sum k^2)` for `n` edges of which `k` share a line.
     #[must_use]
-    pub fn new(tiles: Vec<Rect>, partitions: &[Segment]) -> Self {
-        let mut plan = Self { tiles, walls: Vec::new(), portals: Vec::new() };
+    pub fn new(tiles: Vec<Rect>, partitions: Vec<Segment>) -> Self {
+        let mut plan = Self { tiles, walls: partitions.clone(), portals: Vec::new(), partitions };
         for axis in 0..2 {
-            let mut edges = plan.edges(axis, partitions);
+            let mut edges = plan.edges(axis);
             edges.sort_by(|a, b| a.line.total_cmp(&b.line).then(a.low.total_cmp(&b.low)));
             for on_line in edges.chunk_by(|a, b| a.line.total_cmp(&b.line).is_eq()) {
                 plan.settle_line(axis, on_line);
             }
         }
-        plan.walls.extend_from_slice(partitions);
         plan
+    }
+
+    /// The same floor with tiles cut into equal pieces whose sides are not longer than `most`.
+    #[must_use]
+    pub fn refined(&self, most: f64) -> Self {
+        let cuts = |tile: &Rect, axis: usize| -> Vec<[f64; 2]> {
+            let (low, high) = (tile.min[axis], tile.max[axis]);
+            let count = ((high - low) / most).ceil().max(1.0) as usize;
+            let line = |index: usize| {
+                // The outer lines stay bit-equal, or the pieces would no longer touch their neighbours.
+                if index == count { high } else { low + index as f64 * ((high - low) / count as f64) }
+            };
+            (0..count).map(|index| [line(index), line(index + 1)]).collect()
+        };
+        let mut pieces = Vec::new();
+        for tile in &self.tiles {
+            let columns = cuts(tile, 0);
+            for [bottom, top] in cuts(tile, 1) {
+                pieces.extend(
+                    columns.iter().map(|&[left, right]| Rect { min: [left, bottom], max: [right, top] }),
+                );
+            }
+        }
+        Self::new(pieces, self.partitions.clone())
     }
 
     /// The rectangles of free space.
@@ -91,7 +115,7 @@ impl FloorPlan {
         self.tiles.iter().map(Rect::area).sum()
     }
 
-    fn edges(&self, axis: usize, partitions: &[Segment]) -> Vec<Edge> {
+    fn edges(&self, axis: usize) -> Vec<Edge> {
         let along = 1 - axis;
         let of_tiles = self.tiles.iter().enumerate().flat_map(|(tile, rect)| {
             let (low, high) = (rect.min[along], rect.max[along]);
@@ -100,13 +124,13 @@ impl FloorPlan {
                 Edge { line: rect.min[axis], low, high, role: Role::Above(tile) },
             ]
         });
-        let of_partitions =
-            partitions.iter().filter(|wall| wall.a[axis].total_cmp(&wall.b[axis]).is_eq()).map(|wall| Edge {
-                line: wall.a[axis],
-                low: wall.a[along].min(wall.b[along]),
-                high: wall.a[along].max(wall.b[along]),
-                role: Role::Partition,
-            });
+        let lies_on_line = |wall: &&Segment| wall.a[axis].total_cmp(&wall.b[axis]).is_eq();
+        let of_partitions = self.partitions.iter().filter(lies_on_line).map(|wall| Edge {
+            line: wall.a[axis],
+            low: wall.a[along].min(wall.b[along]),
+            high: wall.a[along].max(wall.b[along]),
+            role: Role::Partition,
+        });
         of_tiles.chain(of_partitions).collect()
     }
 

@@ -64,18 +64,38 @@ impl Segment {
         first <= 0.0 && second <= 0.0 && (first < 0.0 || second < 0.0)
     }
 
-    /// Distance from the point to the nearest point of the segment.
+    /// Distance between the ends.
     #[must_use]
-    pub fn distance_to_point(&self, point: Point) -> f64 {
+    pub fn length(&self) -> f64 {
+        (self.b[0] - self.a[0]).hypot(self.b[1] - self.a[1])
+    }
+
+    /// The point that far from `a` in the direction of `b`.
+    #[must_use]
+    pub fn point_at(&self, distance: f64) -> Point {
+        let share = distance / self.length();
+        [0, 1].map(|axis| self.a[axis] + share * (self.b[axis] - self.a[axis]))
+    }
+
+    /// The point of the segment that is nearest to the given one.
+    #[must_use]
+    pub fn nearest_to(&self, point: Point) -> Point {
         let along = [self.b[0] - self.a[0], self.b[1] - self.a[1]];
         let offset = [point[0] - self.a[0], point[1] - self.a[1]];
         let length2 = along[0] * along[0] + along[1] * along[1];
-        let share = if length2 > 0.0 {
-            ((offset[0] * along[0] + offset[1] * along[1]) / length2).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        (offset[0] - share * along[0]).hypot(offset[1] - share * along[1])
+        if length2 == 0.0 {
+            return self.a;
+        }
+        let share = ((offset[0] * along[0] + offset[1] * along[1]) / length2).clamp(0.0, 1.0);
+        [self.a[0] + share * along[0], self.a[1] + share * along[1]]
+    }
+
+    /// Distance from the point to the nearest point of the segment.
+    #[must_use]
+    pub fn distance_to_point(&self, point: Point) -> f64 {
+        let nearest = self.nearest_to(point);
+        let rest = [point[0] - nearest[0], point[1] - nearest[1]];
+        (rest[0] * rest[0] + rest[1] * rest[1]).sqrt()
     }
 
     /// Distance between the nearest points of the two segments, 0 if they cross.

@@ -1,24 +1,13 @@
 //! Wandering: on and on in about the direction of the last step.
 
-use super::Walker;
+use super::{Pilot, Walker};
 use crate::geometry::Pose;
 
-/// Where a wandering robot is.
-pub(crate) struct Wander {
-    pose: Option<Pose>,
-}
+/// The paper's robot, which remembers nothing but its heading.
+pub(super) struct Wander;
 
-impl Wander {
-    pub(crate) fn new() -> Self {
-        Self { pose: None }
-    }
-
-    pub(crate) fn next(&mut self, walker: &mut Walker<'_>) -> Pose {
-        let pose = match self.pose {
-            None => walker.start(),
-            Some(pose) => walker.step(pose, pose.heading),
-        };
-        self.pose = Some(pose);
-        pose
+impl Pilot for Wander {
+    fn next(&mut self, from: Pose, walker: &mut Walker<'_>) -> Pose {
+        walker.step(from, from.heading)
     }
 }

@@ -25,5 +25,5 @@ pub(super) fn plan(area: f64, street: f64, building: f64) -> FloorPlan {
             tiles.push(Rect { min: [start(column), end(row)], max: [end(column), start(row + 1)] });
         }
     }
-    FloorPlan::new(tiles, &[])
+    FloorPlan::new(tiles, Vec::new())
 }

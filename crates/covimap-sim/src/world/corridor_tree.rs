@@ -32,7 +32,7 @@ pub(super) fn plan(area: f64, width: f64, pitch: f64, rng: &mut ChaCha8Rng) -> F
         tiles.push(corridor);
         tiles.push(square(to));
     }
-    FloorPlan::new(tiles, &[])
+    FloorPlan::new(tiles, Vec::new())
 }
 
 /// Adds nodes one by one at the end of a random branch; returns the edges, parent first.

@@ -9,13 +9,15 @@ const DIRECTIONS: [Point; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]
 /// A corridor of the given width along legs of length `1, 1, 2, 2, 3, 3, ...` times `width + wall`.
 ///
 /// The last leg ends where the wanted area is reached: a middle line of length `l` gives `width (l + width)`.
+/// An area of less than two squares of that width gets a narrower corridor, one leg of two squares.
 pub(super) fn plan(area: f64, width: f64, wall: f64) -> FloorPlan {
+    let width = width.min((area / 2.0).sqrt());
     let half = width / 2.0;
-    let mut remaining = (area / width - width).max(width);
+    let mut remaining = area / width - width;
     let mut corner = [0.0; 2];
     let mut tiles = Vec::new();
     let mut leg = 0_u32;
-    while remaining > 0.0 {
+    loop {
         let direction = DIRECTIONS[leg as usize % 4];
         let full = f64::from(leg / 2 + 1) * (width + wall);
         // A rest shorter than the corridor is wide would not reach past the corner; it goes to this leg.
@@ -23,14 +25,13 @@ pub(super) fn plan(area: f64, width: f64, wall: f64) -> FloorPlan {
         let length = if last { remaining } else { full };
         let next = [corner[0] + length * direction[0], corner[1] + length * direction[1]];
         tiles.push(leg_tile(corner, next, direction, half, last));
-        remaining -= length;
         if last {
-            break;
+            return FloorPlan::new(tiles, Vec::new());
         }
+        remaining -= length;
         corner = next;
         leg += 1;
     }
-    FloorPlan::new(tiles, &[])
 }
 
 /// The leg with the square around its first corner; the square around its end belongs to the next leg.
