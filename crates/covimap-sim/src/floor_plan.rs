@@ -184,3 +184,60 @@ fn without(interval: (f64, f64), cuts: impl Iterator<Item = (f64, f64)>) -> Vec<
     }
     rest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rect(min: Point, max: Point) -> Rect {
+        Rect { min, max }
+    }
+
+    fn wall_length(plan: &FloorPlan) -> f64 {
+        plan.walls().iter().map(Segment::length).sum()
+    }
+
+    #[test]
+    fn a_single_tile_has_four_walls_and_no_portal() {
+        let plan = FloorPlan::new(vec![rect([0.0, 0.0], [2.0, 1.0])], Vec::new());
+        assert_eq!(plan.walls().len(), 4);
+        assert!((wall_length(&plan) - 6.0).abs() < 1e-12);
+        assert!(plan.portals().is_empty());
+    }
+
+    #[test]
+    fn tiles_that_share_part_of_an_edge_are_open_there_but_for_the_partition() {
+        // [0,1]x[0,2] and [1,3]x[1,4] share x = 1 from y = 1 to 2; a partition fills 1.0 to 1.25 and
+        // 1.75 to 2.0 of it.
+        let tiles = vec![rect([0.0, 0.0], [1.0, 2.0]), rect([1.0, 1.0], [3.0, 4.0])];
+        let partitions =
+            vec![Segment { a: [1.0, 1.0], b: [1.0, 1.25] }, Segment { a: [1.0, 2.0], b: [1.0, 1.75] }];
+        let plan = FloorPlan::new(tiles, partitions);
+        let opening = Segment { a: [1.0, 1.25], b: [1.0, 1.75] };
+        assert_eq!(plan.portals(), [Portal { tiles: [0, 1], opening }]);
+        // Outlines 6 + 10, less twice the shared metre, plus 0.5 of partitions.
+        assert!((wall_length(&plan) - 14.5).abs() < 1e-12, "{}", wall_length(&plan));
+    }
+
+    #[test]
+    fn tiles_that_touch_in_a_corner_are_not_joined() {
+        let tiles = vec![rect([0.0, 0.0], [1.0, 1.0]), rect([1.0, 1.0], [2.0, 2.0])];
+        let plan = FloorPlan::new(tiles, Vec::new());
+        assert!(plan.portals().is_empty());
+        assert!((wall_length(&plan) - 8.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn refining_changes_neither_area_nor_walls() {
+        let tiles = vec![rect([0.0, 0.0], [1.0, 2.0]), rect([1.0, 1.0], [3.0, 4.0])];
+        let plan = FloorPlan::new(tiles, vec![Segment { a: [1.0, 1.0], b: [1.0, 1.25] }]);
+        let fine = plan.refined(0.35);
+        assert!(fine.tiles().iter().all(|tile| (0..2).all(|axis| tile.max[axis] - tile.min[axis] < 0.35)));
+        assert!((fine.area() - plan.area()).abs() < 1e-12);
+        assert!((wall_length(&fine) - wall_length(&plan)).abs() < 1e-12);
+        // 3 x 6 and 6 x 9 pieces with 2 * 6 + 3 * 5 and 5 * 9 + 6 * 8 openings inside. On the shared edge the
+        // lines at 1.25, 1.33, 1.67, 2 on both sides leave three openings.
+        assert_eq!(fine.tiles().len(), 72);
+        assert_eq!(fine.portals().len(), 27 + 93 + 3);
+    }
+}

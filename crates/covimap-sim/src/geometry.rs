@@ -113,3 +113,39 @@ impl Segment {
 fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segment(a: Point, b: Point) -> Segment {
+        Segment { a, b }
+    }
+
+    #[test]
+    fn segments_cross_touch_or_miss() {
+        let wall = segment([0.0, 0.0], [2.0, 0.0]);
+        assert!(wall.crosses(&segment([1.0, -1.0], [1.0, 1.0])));
+        assert!(wall.crosses(&segment([1.0, 0.0], [1.0, 1.0])), "touching counts");
+        assert!(wall.crosses(&segment([2.0, -1.0], [2.0, 1.0])), "so does touching an end");
+        assert!(!wall.crosses(&segment([2.1, -1.0], [2.1, 1.0])));
+        assert!(!wall.crosses(&segment([1.0, 0.1], [1.0, 1.0])));
+        assert!(!wall.crosses(&segment([0.5, 0.0], [1.5, 0.0])), "along the wall");
+    }
+
+    #[test]
+    fn distances_are_those_of_hand_calculation() {
+        let wall = segment([0.0, 0.0], [3.0, 4.0]);
+        assert!((wall.length() - 5.0).abs() < 1e-12);
+        // Beside the middle, (1.5, 2) + 2 * (-0.8, 0.6); before the start; on a point.
+        assert!((wall.distance_to_point([-0.1, 3.2]) - 2.0).abs() < 1e-12);
+        assert!((wall.distance_to_point([-1.0, 0.0]) - 1.0).abs() < 1e-12);
+        assert!((segment([1.0, 1.0], [1.0, 1.0]).distance_to_point([4.0, 5.0]) - 5.0).abs() < 1e-12);
+        assert_eq!(wall.point_at(2.5), [1.5, 2.0]);
+        // Parallel at distance 2, crossing, and one that ends 1 m short.
+        let parallel = segment([-1.6, 1.2], [1.4, 5.2]);
+        assert!((wall.distance_to(&parallel) - 2.0).abs() < 1e-12);
+        assert!(wall.distance_to(&segment([3.0, 0.0], [0.0, 4.0])) == 0.0);
+        assert!((wall.distance_to(&segment([3.0, 5.0], [3.0, 9.0])) - 1.0).abs() < 1e-12);
+    }
+}

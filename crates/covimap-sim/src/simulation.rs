@@ -88,3 +88,6 @@ impl<'w> Simulation<'w> {
         self.tally.summary()
     }
 }
+
+#[cfg(test)]
+mod tests;

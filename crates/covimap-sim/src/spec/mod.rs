@@ -81,3 +81,6 @@ fn require_not_negative(name: &'static str, value: f64) -> Result<(), SimError> 
 fn require_share(name: &'static str, value: f64) -> Result<(), SimError> {
     require((0.0..=1.0).contains(&value), name, value, "between 0 and 1")
 }
+
+#[cfg(test)]
+mod tests;
