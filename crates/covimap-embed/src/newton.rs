@@ -109,9 +109,9 @@ impl NormalEquations {
         let mut rows = Vec::with_capacity(3 * n + 4 * pairs.pairs().len());
         let mut block_of_pair = Vec::with_capacity(pairs.pairs().len());
         let mut at = 0;
-        for i in 0..n {
-            let own = &pairs.pairs()[at..at + upper[i]];
-            at += upper[i];
+        for (i, &count) in upper.iter().enumerate() {
+            let own = &pairs.pairs()[at..at + count];
+            at += count;
             let first = rows.len();
             rows.extend([2 * i, 2 * i + 1]);
             rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
