@@ -1,6 +1,6 @@
 //! Options that several commands share.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::{CommandFactory, ValueEnum, error::ErrorKind};
@@ -80,9 +80,4 @@ impl From<FormatName> for LogFormat {
 /// Options that make no sense together; exit code 2.
 pub fn conflict(what: impl std::fmt::Display) -> anyhow::Error {
     Cli::command().error(ErrorKind::ArgumentConflict, what).into()
-}
-
-/// Whether two paths are the same existing file.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

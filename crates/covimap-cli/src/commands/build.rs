@@ -10,7 +10,7 @@ use covimap_map::{
 
 use crate::console::{self, Console};
 use crate::interrupt::Deferral;
-use crate::options::{LogArgs, ThreadArgs, conflict, same_file};
+use crate::options::{LogArgs, ThreadArgs, conflict};
 use crate::progress::{self, Progress};
 use crate::summary;
 
@@ -166,6 +166,11 @@ fn default_output(log: &Path) -> PathBuf {
     }
     name.as_mut_os_string().push(".map.json");
     name
+}
+
+/// Whether two paths are the same existing file.
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 fn times_line(times: &[(Stage, Duration)]) -> String {

@@ -13,7 +13,7 @@ use crate::interrupt::Deferral;
 use crate::options::ThreadArgs;
 use crate::{summary, table};
 
-/// A camera robot among 15 barcoded posts; where it is from stands in `data/README.md`.
+/// Five camera robots among 15 barcoded posts; where it is from stands in `data/README.md`.
 const ROBOT_LOG: &[u8] = include_bytes!("../../data/mrclam-1.jsonl");
 const ROBOT_TRUTH: &[u8] = include_bytes!("../../data/mrclam-1.truth.csv");
 /// Ten lists of coloured cylinders, table V (a) of the CoviMap paper.
@@ -50,12 +50,12 @@ fn robot(picture: &Path) -> anyhow::Result<()> {
     let truth = Truth::parse(ROBOT_TRUTH, "mrclam-1.truth.csv")?;
     let [auto, classical] = [map(&log, Method::Auto)?, map(&log, Method::Classical)?];
     let mut params = SvgParams::default();
-    params.title = Some("A camera robot among 15 barcoded posts".to_owned());
+    params.title = Some("Five camera robots among 15 barcoded posts".to_owned());
     params.truth = Some(&truth);
     draw(&auto, &params, picture)?;
     Ok(console::print(format_args!(
-        "A camera robot among 15 barcoded posts (UTIAS MRCLAM 1). The log says which posts it saw\n\
-         together, step by step, and nothing else: no range, no bearing, no pose.\n\n\
+        "Five camera robots among 15 barcoded posts (UTIAS MRCLAM 1). The log says which posts a robot\n\
+         saw together, step by step, and nothing else: no range, no bearing, no pose.\n\n\
          {}\n\n{}\n\n{}",
         summary::of(auto.report()),
         positions_beside(&auto, &truth)?,

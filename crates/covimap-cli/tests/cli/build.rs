@@ -126,7 +126,7 @@ fn warnings_name_landmarks() {
 }
 
 #[test]
-fn a_long_name_of_a_log_gives_the_name_of_its_map() {
+fn the_map_of_a_log_elsewhere_comes_into_the_current_folder() {
     let scratch = Scratch::new();
     scratch.succeeds(&["build", data("mrclam-1.jsonl").to_str().unwrap(), "-q"]);
     assert_eq!(scratch.names(), ["mrclam-1.map.json"]);

@@ -7,17 +7,19 @@ use std::process::{Child, Command, Stdio};
 
 use crate::scratch::{SQUARE, Scratch};
 
-/// A build that reads an endless log.
-fn endless(scratch: &Scratch) -> Child {
+/// A run that reads an endless input.
+fn endless(scratch: &Scratch, arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_covimap"))
         .current_dir(scratch.path())
-        .args(["build", "-", "-o", "map.json"])
+        .args(arguments)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap()
 }
+
+const BUILD: &[&str] = &["build", "-", "-o", "map.json"];
 
 fn signal(run: &Child, name: &str) {
     let sent = Command::new("kill").args([&format!("-{name}"), &run.id().to_string()]).status().unwrap();
@@ -28,7 +30,7 @@ fn signal(run: &Child, name: &str) {
 fn an_interrupted_build_leaves_nothing_behind() {
     for name in ["INT", "TERM"] {
         let scratch = Scratch::new();
-        let mut run = endless(&scratch);
+        let mut run = endless(&scratch, BUILD);
         let mut log = run.stdin.take().unwrap();
         let block = SQUARE.repeat(10_000);
         // More than a pipe holds: the program is reading now.
@@ -45,9 +47,21 @@ fn an_interrupted_build_leaves_nothing_behind() {
 }
 
 #[test]
+fn a_command_that_cannot_stop_by_itself_ends_at_once() {
+    let scratch = Scratch::new();
+    let mut run = endless(&scratch, &["info", "-"]);
+    let mut map = run.stdin.take().unwrap();
+    // More than a pipe holds: the program is reading now.
+    map.write_all(&vec![b' '; 1 << 20]).unwrap();
+    signal(&run, "INT");
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    drop(map);
+}
+
+#[test]
 fn a_second_interrupt_ends_a_build_that_waits() {
     let scratch = Scratch::new();
-    let mut run = endless(&scratch);
+    let mut run = endless(&scratch, BUILD);
     let mut log = run.stdin.take().unwrap();
     log.write_all(SQUARE.repeat(10_000).as_bytes()).unwrap();
     // The log stays open and says no more, so the program waits for it.
