@@ -47,8 +47,7 @@ impl FloorPlan {
     ///
     /// Tiles may touch but not overlap. Edges that touch, and partitions, must lie on bit-equal
     /// coordinates. Time `O(n log n + sum k^2)` for `n` edges of which `k` share a line.
-    #[must_use]
-    pub fn new(tiles: Vec<Rect>, partitions: Vec<Segment>) -> Self {
+    pub(crate) fn new(tiles: Vec<Rect>, partitions: Vec<Segment>) -> Self {
         let mut plan = Self { tiles, walls: partitions.clone(), portals: Vec::new(), partitions };
         for axis in 0..2 {
             let mut edges = plan.edges(axis);
@@ -61,8 +60,7 @@ impl FloorPlan {
     }
 
     /// The same floor with tiles cut into equal pieces whose sides are not longer than `most`.
-    #[must_use]
-    pub fn refined(&self, most: f64) -> Self {
+    pub(crate) fn refined(&self, most: f64) -> Self {
         let cuts = |tile: &Rect, axis: usize| -> Vec<[f64; 2]> {
             let (low, high) = (tile.min[axis], tile.max[axis]);
             let count = ((high - low) / most).ceil().max(1.0) as usize;

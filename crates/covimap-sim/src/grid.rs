@@ -56,21 +56,24 @@ struct ByCell<T> {
 }
 
 impl<T: Copy> ByCell<T> {
-    /// Counting sort of `(cell, thing)`; things of one cell stay in order.
-    fn new(cells: Cells, pairs: &[(usize, T)]) -> Self {
+    /// Counting sort. `list` calls its argument with every `(cell, thing)`, and does so twice the same way:
+    /// first they are counted, then put in their places. Things of one cell stay in order.
+    fn new(cells: Cells, list: impl Fn(&mut dyn FnMut(usize, T))) -> Self {
         let mut starts = vec![0_u32; cells.len() + 1];
-        for &(cell, _) in pairs {
+        let mut any = None;
+        list(&mut |cell, thing| {
             starts[cell + 1] += 1;
-        }
+            any = Some(thing);
+        });
         for cell in 0..cells.len() {
             starts[cell + 1] += starts[cell];
         }
+        let mut things = any.map_or_else(Vec::new, |thing| vec![thing; starts[cells.len()] as usize]);
         let mut next = starts.clone();
-        let mut things: Vec<T> = pairs.iter().map(|&(_, thing)| thing).collect();
-        for &(cell, thing) in pairs {
+        list(&mut |cell, thing| {
             things[next[cell] as usize] = thing;
             next[cell] += 1;
-        }
+        });
         Self { cells, starts, things }
     }
 
@@ -99,9 +102,11 @@ impl PointGrid {
     /// Sorts the points into cells fit for searches of the given radius. Time and memory `O(n)`.
     pub(crate) fn new(points: &[Point], bounds: Rect, reach: f64) -> Self {
         let cells = Cells::new(bounds, reach / 2.0, points.len());
-        let pairs: Vec<_> =
-            (0_u32..).zip(points).map(|(number, &point)| (cells.cell(point), (number, point))).collect();
-        Self(ByCell::new(cells, &pairs))
+        Self(ByCell::new(cells.clone(), |add| {
+            for (number, &point) in (0_u32..).zip(points) {
+                add(cells.cell(point), (number, point));
+            }
+        }))
     }
 
     /// Calls `visit` for every point nearer than `reach`, in an order that depends on the grid alone.
@@ -131,14 +136,15 @@ impl<T: Copy> BoxGrid<T> {
         // As many cells as the boxes cover do no harm: their lists are that long anyway.
         let covered: f64 = boxes.iter().map(|(rect, _)| rect.area() / (side * side)).sum();
         let cells = Cells::new(bounds, side, boxes.len() + covered as usize);
-        let mut pairs = Vec::new();
-        for (rect, thing) in boxes {
-            for row in cells.row(rect.min[1])..=cells.row(rect.max[1]) {
-                let columns = cells.column(rect.min[0])..=cells.column(rect.max[0]);
-                pairs.extend(columns.map(|column| (row * cells.columns + column, *thing)));
+        Self(ByCell::new(cells.clone(), |add| {
+            for (rect, thing) in boxes {
+                for row in cells.row(rect.min[1])..=cells.row(rect.max[1]) {
+                    for column in cells.column(rect.min[0])..=cells.column(rect.max[0]) {
+                        add(row * cells.columns + column, *thing);
+                    }
+                }
             }
-        }
-        Self(ByCell::new(cells, &pairs))
+        }))
     }
 
     /// Everything whose box contains the place, and perhaps more from close by.
@@ -158,7 +164,7 @@ pub(crate) fn wall_grid(walls: &[Segment], bounds: Rect, reach: f64) -> BoxGrid<
             (Rect { min, max }, *wall)
         })
         .collect();
-    BoxGrid::new(bounds, reach / 2.0, &boxes)
+    BoxGrid::new(bounds, reach, &boxes)
 }
 
 #[cfg(test)]
