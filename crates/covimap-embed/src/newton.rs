@@ -15,7 +15,7 @@
 //! A sparse Cholesky factorisation of order `2 n` a step; the ordering is found once.
 
 use crate::laplacian::{Factored, LowerTriangle, components};
-use crate::solve::check_start;
+use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
 
@@ -26,9 +26,13 @@ const MOST_DAMPING: f64 = 1e9;
 
 /// Minimises the stress of `pairs` from `start` by damped Newton steps.
 ///
+/// Every connected component stays about where its start was. Objects that coincide at the start
+/// rest on each other as in [`smacof`](crate::smacof()).
+///
 /// # Errors
-/// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::OutOfMemory`] where the
-/// factor does not fit into memory.
+/// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::Singular`] where the
+/// weights are too different in size for the matrix to be factored; [`EmbedError::OutOfMemory`]
+/// where the factor does not fit into memory.
 pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<Embedding, EmbedError> {
     check_start(pairs, start)?;
     let mut points = start.to_vec();
@@ -38,7 +42,12 @@ pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<
     let mut damping = 1e-2;
     let mut termination = Termination::IterationLimit;
     let mut iterations = 0;
+    let negligible = negligible_stress(pairs);
     while iterations < stop.max_iterations {
+        if stress <= negligible {
+            termination = Termination::Converged;
+            break;
+        }
         iterations += 1;
         let gradient = system.assemble(pairs, &points, damping);
         let factor = match factored.take() {
@@ -109,9 +118,9 @@ impl NormalEquations {
         let mut rows = Vec::with_capacity(3 * n + 4 * pairs.pairs().len());
         let mut block_of_pair = Vec::with_capacity(pairs.pairs().len());
         let mut at = 0;
-        for i in 0..n {
-            let own = &pairs.pairs()[at..at + upper[i]];
-            at += upper[i];
+        for (i, &count) in upper.iter().enumerate() {
+            let own = &pairs.pairs()[at..at + count];
+            at += count;
             let first = rows.len();
             rows.extend([2 * i, 2 * i + 1]);
             rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
@@ -174,3 +183,6 @@ impl NormalEquations {
         gradient
     }
 }
+
+#[cfg(test)]
+mod tests;
