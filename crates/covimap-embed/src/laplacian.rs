@@ -39,7 +39,7 @@ impl LowerTriangle {
     }
 
     /// `y = A x` for the symmetric matrix whose lower triangle this is.
-    fn times(&self, x: &[f64]) -> Vec<f64> {
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for column in 0..self.order() {
             for entry in self.starts[column]..self.starts[column + 1] {
@@ -244,37 +244,4 @@ pub(crate) fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn solves_the_singular_system_in_every_component() {
-        // Two components {0, 1, 2} and {3, 4}, and 5 alone.
-        let edges = [(0, 1, 2.0), (0, 2, 1.0), (1, 2, 0.5), (3, 4, 3.0)];
-        let wanted = [[1.0, 0.0], [-2.0, 1.0], [1.0, -1.0], [0.5, 2.0], [-0.5, -2.0], [0.0, 0.0]];
-        let mut y = vec![[0.0; 2]; 6];
-        for &(i, j, w) in &edges {
-            for axis in 0..2 {
-                let pull = w * (wanted[i as usize][axis] - wanted[j as usize][axis]);
-                y[i as usize][axis] += pull;
-                y[j as usize][axis] -= pull;
-            }
-        }
-        let solved = Laplacian::new(6, &edges).unwrap().solve(&y);
-        for (got, want) in solved.iter().zip(&wanted) {
-            assert!((got[0] - want[0]).hypot(got[1] - want[1]) < 1e-12, "{got:?} for {want:?}");
-        }
-    }
-
-    #[test]
-    fn components_are_numbered_by_their_first_object() {
-        let (component, sizes) = components(6, [(4, 5), (0, 3), (3, 5)].into_iter());
-        assert_eq!(component, [0, 1, 2, 0, 0, 0]);
-        assert_eq!(sizes, [4, 1, 1]);
-    }
-
-    #[test]
-    fn no_object_at_all() {
-        assert!(Laplacian::new(0, &[]).unwrap().solve(&[]).is_empty());
-    }
-}
+mod tests;

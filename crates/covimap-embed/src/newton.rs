@@ -15,10 +15,12 @@
 //! A sparse Cholesky factorisation of order `2 n` a step; the ordering is found once.
 
 use crate::laplacian::{Factored, LowerTriangle, components};
-use crate::solve::check_start;
+use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
 
+/// Damping of the first step: starts are near enough for bold ones.
+const FIRST_DAMPING: f64 = 1e-2;
 /// Damping below which steps are plain Newton steps for all purposes.
 const LEAST_DAMPING: f64 = 1e-9;
 /// Damping above which no decrease is to be hoped for.
@@ -26,61 +28,78 @@ const MOST_DAMPING: f64 = 1e9;
 
 /// Minimises the stress of `pairs` from `start` by damped Newton steps.
 ///
+/// Every connected component stays about where its start was. Objects that coincide at the start
+/// rest on each other as in [`smacof`](crate::smacof()).
+///
 /// # Errors
-/// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::OutOfMemory`] where the
-/// factor does not fit into memory.
+/// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::Singular`] where the
+/// weights are too different in size for the matrix to be factored; [`EmbedError::OutOfMemory`]
+/// where the factor does not fit into memory.
 pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<Embedding, EmbedError> {
     check_start(pairs, start)?;
     let mut points = start.to_vec();
     let mut stress = raw_stress(pairs, &points);
     let mut system = NormalEquations::new(pairs);
-    let mut factored: Option<Factored> = None;
-    let mut damping = 1e-2;
-    let mut termination = Termination::IterationLimit;
+    let mut damping = Damping(FIRST_DAMPING);
+    let negligible = negligible_stress(pairs);
     let mut iterations = 0;
-    while iterations < stop.max_iterations {
+    let termination = loop {
+        if stress <= negligible || damping.hopeless() {
+            break Termination::Converged;
+        }
+        if iterations == stop.max_iterations {
+            break Termination::IterationLimit;
+        }
         iterations += 1;
-        let gradient = system.assemble(pairs, &points, damping);
-        let factor = match factored.take() {
-            None => Factored::new(&system.matrix),
-            Some(old) => old.refactor(&system.matrix),
-        }?;
-        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
-        factor.solve(&mut step, 1);
-        factored = Some(factor);
-        let moved: Vec<Point> =
-            points.iter().enumerate().map(|(i, p)| [p[0] + step[2 * i], p[1] + step[2 * i + 1]]).collect();
+        let Step { moved, promised } = system.step(pairs, &points, damping.0)?;
         let moved_stress = raw_stress(pairs, &moved);
-        // Half of -g's: the decrease of the damped quadratic; g is the gradient of stress / 2.
-        let promised: f64 = gradient.iter().zip(&step).map(|(g, s)| -g * s).sum();
         let gained = stress - moved_stress;
         // Written so that a NaN counts as a failed step.
         if gained >= 0.0 {
-            let done = gained <= stop.tolerance * stress && damping < 1.0;
+            let done = gained <= stop.tolerance * stress && damping.0 < 1.0;
             points = moved;
             stress = moved_stress;
-            damping = (damping
-                * if gained > 0.7 * promised {
-                    0.1
-                } else if gained < 0.2 * promised {
-                    4.0
-                } else {
-                    0.5
-                })
-            .max(LEAST_DAMPING);
             if done {
-                termination = Termination::Converged;
-                break;
+                break Termination::Converged;
             }
+            damping.adapt(gained / promised);
         } else {
-            damping *= 10.0;
-            if damping > MOST_DAMPING {
-                termination = Termination::Converged;
-                break;
-            }
+            damping.raise();
         }
-    }
+    };
     Ok(Embedding::new(pairs, points, stress, iterations, termination))
+}
+
+/// `mu` after Levenberg and Marquardt.
+struct Damping(f64);
+
+impl Damping {
+    /// After a step that kept this share of its promise.
+    fn adapt(&mut self, kept: f64) {
+        let factor = match kept {
+            good if good > 0.7 => 0.1,
+            poor if poor < 0.2 => 4.0,
+            _ => 0.5,
+        };
+        self.0 = (self.0 * factor).max(LEAST_DAMPING);
+    }
+
+    /// After a step that would have raised the stress.
+    fn raise(&mut self) {
+        self.0 *= 10.0;
+    }
+
+    /// Whether steps are so short that rounding hides what they gain.
+    fn hopeless(&self) -> bool {
+        self.0 > MOST_DAMPING
+    }
+}
+
+/// A step that is not taken yet.
+struct Step {
+    moved: Vec<Point>,
+    /// Decrease of the stress that the damped quadratic promises.
+    promised: f64,
 }
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
@@ -90,6 +109,8 @@ struct NormalEquations {
     block_of_pair: Vec<[usize; 2]>,
     /// One object of each component, tied down against shifts.
     tied: Vec<bool>,
+    /// The factor of the last step, whose ordering serves the next.
+    factored: Option<Factored>,
 }
 
 impl NormalEquations {
@@ -123,7 +144,24 @@ impl NormalEquations {
             block_of_pair.extend((0..own.len()).map(|k| [first + 2 + 2 * k, second + 1 + 2 * k]));
         }
         let values = vec![0.0; rows.len()];
-        Self { matrix: LowerTriangle { starts, rows, values }, block_of_pair, tied }
+        Self { matrix: LowerTriangle { starts, rows, values }, block_of_pair, tied, factored: None }
+    }
+
+    /// Solves for the step from `points`.
+    fn step(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) -> Result<Step, EmbedError> {
+        let gradient = self.assemble(pairs, points, damping);
+        let factored = match self.factored.take() {
+            None => Factored::new(&self.matrix),
+            Some(last) => last.refactor(&self.matrix),
+        }?;
+        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        factored.solve(&mut step, 1);
+        self.factored = Some(factored);
+        // The quadratic of half the stress falls by -g's / 2, that of the stress by twice that.
+        let promised = gradient.iter().zip(&step).map(|(g, s)| -g * s).sum();
+        let moved =
+            points.iter().zip(step.chunks_exact(2)).map(|(p, s)| [p[0] + s[0], p[1] + s[1]]).collect();
+        Ok(Step { moved, promised })
     }
 
     /// Fills the matrix and returns the gradient of half the stress.
@@ -174,3 +212,6 @@ impl NormalEquations {
         gradient
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -63,3 +63,42 @@ impl PairDistances {
         &self.pairs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_that_make_no_problem_are_refused() {
+        let good = Pair { i: 0, j: 1, distance: 1.0, weight: 1.0 };
+        let refusal = |pairs: &[Pair]| match PairDistances::new(3, pairs.to_vec()).unwrap_err() {
+            EmbedError::BadPair { i, j, n: 3, what } => (i, j, what),
+            other => panic!("{other}"),
+        };
+        let order = "objects must satisfy i < j < n";
+        assert_eq!(refusal(&[Pair { j: 3, ..good }]), (0, 3, order));
+        assert_eq!(refusal(&[Pair { i: 1, ..good }]), (1, 1, order));
+        assert_eq!(refusal(&[Pair { i: 2, ..good }]), (2, 1, order));
+        let ascend = "pairs must ascend and none may be listed twice";
+        assert_eq!(refusal(&[good, good]), (0, 1, ascend));
+        assert_eq!(refusal(&[Pair { j: 2, ..good }, good]), (0, 1, ascend));
+        for distance in [-1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(
+                refusal(&[Pair { distance, ..good }]).2,
+                "the distance must be finite and not negative"
+            );
+        }
+        for weight in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let what = "the weight must be finite and positive; leave the pair out instead";
+            assert_eq!(refusal(&[Pair { weight, ..good }]).2, what);
+        }
+        let error = PairDistances::new(3, vec![Pair { j: 3, ..good }]).unwrap_err();
+        assert_eq!(error.to_string(), "pair (0, 3) of 3 objects: objects must satisfy i < j < n");
+    }
+
+    #[test]
+    fn a_distance_of_zero_is_a_distance() {
+        let pair = Pair { i: 0, j: 1, distance: 0.0, weight: 1.0 };
+        assert_eq!(PairDistances::new(2, vec![pair]).unwrap().pairs(), [pair]);
+    }
+}

@@ -25,13 +25,17 @@
 use rayon::prelude::*;
 
 use crate::laplacian::Laplacian;
-use crate::solve::check_start;
+use crate::solve::{check_start, negligible_stress};
 use crate::stress::{Incidence, pulls, raw_stress};
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
 
 /// Minimises the stress of `pairs` from `start`.
 ///
 /// The last step is a plain Guttman step, which removes the alternation that relaxed steps leave.
+/// It centres every connected component at the origin.
+///
+/// Objects that coincide at the start rest on each other until other pairs pull them apart; a
+/// start with all objects in one place is a stationary point and stays.
 ///
 /// # Errors
 /// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::Singular`] where the
@@ -56,6 +60,7 @@ pub fn smacof(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<
     let mut pull = vec![0.0; pairs.pairs().len()];
     let mut points = start.to_vec();
     let mut stress = pulls(pairs, &points, &mut pull);
+    let negligible = negligible_stress(pairs);
     let mut termination = Termination::IterationLimit;
     let mut iterations = 0;
     while iterations < stop.max_iterations {
@@ -68,7 +73,7 @@ pub fn smacof(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<
             .collect();
         let before = stress;
         stress = pulls(pairs, &relaxed, &mut pull);
-        let done = before - stress <= stop.tolerance * before;
+        let done = before - stress <= stop.tolerance * before || stress <= negligible;
         if done || iterations == stop.max_iterations {
             points = guttman;
             stress = raw_stress(pairs, &points);
@@ -98,3 +103,6 @@ fn weighted_differences(incidence: &Incidence, points: &[Point], pull: &[f64]) -
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,8 @@ use crate::{EmbedError, PairDistances, Point};
 pub struct StopRule {
     /// Most steps, `>= 0`.
     pub max_iterations: usize,
-    /// Converged when a step lowers the stress by less than this share of it, `>= 0`.
+    /// Converged when a step lowers the stress by less than this share of it, `>= 0`, or leaves
+    /// nothing of it but rounding.
     pub tolerance: f64,
 }
 
@@ -27,7 +28,7 @@ pub enum Termination {
 /// A configuration and how it was reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Embedding {
-    /// One point an object; every connected component is centred at the origin.
+    /// One point an object.
     pub points: Vec<Point>,
     /// Raw stress of `points`.
     pub stress: f64,
@@ -52,6 +53,11 @@ impl Embedding {
     }
 }
 
+/// Stress that rounding alone makes: `1e-26 sum w d^2`, that is, distances right to 13 digits.
+pub(crate) fn negligible_stress(pairs: &PairDistances) -> f64 {
+    1e-26 * pairs.pairs().iter().map(|pair| pair.weight * pair.distance * pair.distance).sum::<f64>()
+}
+
 /// Refuses a start that is not one finite point an object.
 pub(crate) fn check_start(pairs: &PairDistances, start: &[Point]) -> Result<(), EmbedError> {
     let bad = |what| EmbedError::BadStart { what, found: start.len(), wanted: pairs.objects() };
@@ -63,3 +69,6 @@ pub(crate) fn check_start(pairs: &PairDistances, start: &[Point]) -> Result<(), 
     }
     Ok(())
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -109,3 +109,6 @@ pub(crate) fn pulls(pairs: &PairDistances, points: &[Point], pull: &mut [f64]) -
         .collect();
     partial.iter().sum()
 }
+
+#[cfg(test)]
+mod tests;
