@@ -32,7 +32,7 @@ pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use fastmap::fastmap;
 pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
-pub use newton::newton;
+pub use newton::{newton, newton_while};
 pub use pairs::{Pair, PairDistances};
 pub use pivot::{PivotDistances, landmark_scaling, pivot_scaling};
 pub use procrustes::{

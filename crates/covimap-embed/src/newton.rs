@@ -36,6 +36,20 @@ const MOST_DAMPING: f64 = 1e9;
 /// weights are too different in size for the matrix to be factored; [`EmbedError::OutOfMemory`]
 /// where the factor does not fit into memory.
 pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<Embedding, EmbedError> {
+    newton_while(pairs, start, stop, || true)
+}
+
+/// As [`newton`], but asks before every step whether to go on; if not, the result is what was
+/// reached, with [`Termination::Interrupted`].
+///
+/// # Errors
+/// As [`newton`].
+pub fn newton_while(
+    pairs: &PairDistances,
+    start: &[Point],
+    stop: StopRule,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<Embedding, EmbedError> {
     check_start(pairs, start)?;
     let mut points = start.to_vec();
     let mut stress = raw_stress(pairs, &points);

@@ -23,6 +23,8 @@ pub enum Termination {
     Converged,
     /// The limit of steps was reached first.
     IterationLimit,
+    /// The caller asked to stop.
+    Interrupted,
 }
 
 /// A configuration and how it was reached.

@@ -13,7 +13,8 @@
 //! `O(N^3)` time and `O(N^2)` memory for N landmarks.
 //!
 //! # References
-//! T. Yairi, K. Hori, K. Hirama, "Covisibility-based map building" (the CoviMap paper).
+//! T. Yairi, K. Hori, K. Hirama, "Qualitative map learning based on co-visibility of
+//! objects" (the CoviMap paper).
 
 use covimap_embed::{ClassicalScaling, DistanceMatrix, classical_scaling};
 

@@ -1,6 +1,6 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, PairDistances, Point, Termination, newton, stress1};
+use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
 use rayon::prelude::*;
 
 use crate::places::{SeenSets, refine};
@@ -52,9 +52,9 @@ pub(crate) fn map_component(
     let start = stitch::stitch(graph, &cover, &maps)?;
     observer.finished(Stage::Stitch);
 
-    stage(Stage::Polish, None)?;
+    stage(Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
     let pairs = graph.to_pairs();
-    let polished = polish(&pairs, &start, params)?;
+    let polished = polish(&pairs, &start, params, observer)?;
     observer.finished(Stage::Polish);
 
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
@@ -75,8 +75,18 @@ pub(crate) fn map_component(
     })
 }
 
-fn polish(pairs: &PairDistances, start: &[Point], params: &AutoParams) -> Result<Embedding, MapError> {
-    Ok(newton(pairs, start, params.polish_stop.rule())?)
+/// Least stress over all links, from the stitched start.
+fn polish(
+    pairs: &PairDistances,
+    start: &[Point],
+    params: &AutoParams,
+    observer: &dyn Observer,
+) -> Result<Embedding, MapError> {
+    let polished = newton_while(pairs, start, params.polish_stop.rule(), || {
+        observer.advanced(1);
+        !observer.interrupted()
+    })?;
+    if polished.termination == Termination::Interrupted { Err(MapError::Interrupted) } else { Ok(polished) }
 }
 
 /// Brings the points of a component into the frame that all maps use: the centroid at the origin,

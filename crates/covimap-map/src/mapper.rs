@@ -35,46 +35,42 @@ impl Mapper {
     /// all landmarks are always seen together; [`MapError::TooLargeForClassical`];
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
-        observer.started(Stage::Count, Some(log.names().len() as u64));
         let counts = CoVisibility::count(log, observer)?;
         check_information(&counts)?;
         let graph = LinkGraph::from_counts(&counts);
-        observer.finished(Stage::Count);
-
         let components = graph.components();
-        let maps = components
-            .iter()
-            .map(|members| match self.params.method {
-                Method::Auto => self.auto_component(log, &graph, members, observer),
-                Method::Classical => {
+        let maps: Vec<ComponentMap> = match self.params.method {
+            Method::Auto => self.auto_components(log, &graph, &components, observer)?,
+            Method::Classical => components
+                .iter()
+                .map(|members| {
                     classical_component(&counts, &graph, members, &self.params.classical, observer)
-                }
-            })
-            .collect::<Result<Vec<ComponentMap>, MapError>>()?;
+                })
+                .collect::<Result<_, MapError>>()?,
+        };
         let report = report(&counts, &graph, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
         GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
     }
 
-    fn auto_component(
+    fn auto_components(
         &self,
         log: &SightingLog,
         graph: &LinkGraph,
-        members: &[u32],
+        components: &[Vec<u32>],
         observer: &dyn Observer,
-    ) -> Result<ComponentMap, MapError> {
-        let mut place = vec![u32::MAX; graph.landmarks()];
-        for (k, &member) in members.iter().enumerate() {
-            place[member as usize] = k as u32;
-        }
-        let sets = SeenSets::of_component(log, &place);
-        let mut map = if members.len() == graph.landmarks() {
-            map_component(graph, &sets, &self.params.auto, observer)?
-        } else {
-            map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
+    ) -> Result<Vec<ComponentMap>, MapError> {
+        let sets = SeenSets::by_component(log, components);
+        let map = |(members, sets): (&Vec<u32>, SeenSets)| {
+            let mut map = if members.len() == graph.landmarks() {
+                map_component(graph, &sets, &self.params.auto, observer)?
+            } else {
+                map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
+            };
+            put_in_frame(&mut map.points);
+            Ok(map)
         };
-        put_in_frame(&mut map.points);
-        Ok(map)
+        components.iter().zip(sets).map(map).collect()
     }
 }
 

@@ -10,8 +10,8 @@
 //! | rmse | `sqrt(mean |t_i - (s R m_i + b)|^2)` after the best similarity fit, in truth's unit | 0 | spread |
 //! | knn10 | share of the 10 nearest true neighbours that are among the 10 nearest in the map | 1 | `k / (n - 1)` |
 //!
-//! Equation numbers are those of T. Yairi, K. Hori, K. Hirama, *Map building without
-//! localization by dimensionality reduction techniques* (CoviMap).
+//! Equation numbers are those of T. Yairi, K. Hori, K. Hirama, *Qualitative map learning based on
+//! co-visibility of objects* (the CoviMap paper).
 //!
 //! # Which landmarks count
 //! Landmarks that map and truth share. Those of the truth that the map lacks are `missing`, those

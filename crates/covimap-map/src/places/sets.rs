@@ -13,18 +13,28 @@ pub(crate) struct SeenSets {
 }
 
 impl SeenSets {
-    /// The sets of the steps that lie in one component; `place[landmark]` is the landmark's number in
-    /// the component, or `u32::MAX` outside. Numbers ascend with those of the log.
-    pub fn of_component(log: &SightingLog, place: &[u32]) -> Self {
-        let inside = |step: &usize| {
-            let seen = log.step(*step);
-            seen.len() >= 2 && place[seen[0] as usize] != u32::MAX
-        };
-        let mut order: Vec<usize> = (0..log.steps()).filter(inside).collect();
-        order.par_sort_unstable_by(|&a, &b| log.step(a).cmp(log.step(b)));
+    /// The sets of every component; landmarks are numbered by their places in their component.
+    ///
+    /// All landmarks of a step lie in one component, that of its first.
+    pub fn by_component(log: &SightingLog, components: &[Vec<u32>]) -> Vec<Self> {
+        let mut place = vec![(0, 0); log.names().len()];
+        for (component, members) in components.iter().enumerate() {
+            for (k, &member) in members.iter().enumerate() {
+                place[member as usize] = (component, k as u32);
+            }
+        }
+        let mut steps = vec![Vec::new(); components.len()];
+        for step in (0..log.steps()).filter(|&step| log.step(step).len() >= 2) {
+            steps[place[log.step(step)[0] as usize].0].push(step);
+        }
+        steps.into_iter().map(|steps| Self::of_steps(log, steps, &place)).collect()
+    }
+
+    fn of_steps(log: &SightingLog, mut steps: Vec<usize>, place: &[(usize, u32)]) -> Self {
+        steps.par_sort_unstable_by(|&a, &b| log.step(a).cmp(log.step(b)));
         let mut sets = Self { starts: vec![0], seen: Vec::new(), times: Vec::new() };
-        for equal in order.chunk_by(|&a, &b| log.step(a) == log.step(b)) {
-            sets.seen.extend(log.step(equal[0]).iter().map(|&landmark| place[landmark as usize]));
+        for equal in steps.chunk_by(|&a, &b| log.step(a) == log.step(b)) {
+            sets.seen.extend(log.step(equal[0]).iter().map(|&landmark| place[landmark as usize].1));
             sets.starts.push(sets.seen.len());
             sets.times.push(equal.len() as u32);
         }
@@ -61,8 +71,11 @@ mod tests {
             vec![],
             vec!["A", "B", "C"],
         ]);
-        let sets = SeenSets::of_component(&log, &[0, 1, 2, u32::MAX, u32::MAX]);
+        let [sets, other] = &SeenSets::by_component(&log, &[vec![0, 1, 2], vec![3, 4]])[..] else {
+            panic!("one list of sets a component");
+        };
         assert_eq!(sets.len(), 2);
+        assert_eq!((other.len(), other.seen(0), other.times(0)), (1, [0, 1].as_slice(), 1.0));
         assert_eq!((sets.seen(0), sets.times(0)), ([0, 1].as_slice(), 2.0));
         assert_eq!((sets.seen(1), sets.times(1)), ([0, 1, 2].as_slice(), 1.0));
     }
