@@ -150,7 +150,7 @@ fn reported(n: usize) -> usize {
 
 /// The sign that makes the entry of largest absolute value positive. Entries that differ by
 /// rounding count as equal: the first one decides.
-fn sign(vector: &[f64]) -> f64 {
+pub(crate) fn sign(vector: &[f64]) -> f64 {
     let largest = vector.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     let leader = vector.iter().find(|x| x.abs() >= largest * (1.0 - 1e-9));
     leader.map_or(1.0, |x| x.signum())

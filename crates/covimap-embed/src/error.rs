@@ -108,4 +108,29 @@ pub enum EmbedError {
         /// What is wrong and what is asked.
         what: &'static str,
     },
+    /// An observation of a regression is not usable.
+    #[error("observation {index}: {what}")]
+    BadObservation {
+        /// Position in the list.
+        index: usize,
+        /// What is wrong and what is asked.
+        what: &'static str,
+    },
+    /// Two lists that belong together differ in length.
+    #[error("lists of {first} and {second} entries belong together; give as many of each")]
+    Lengths {
+        /// Length of the first list.
+        first: usize,
+        /// Length of the second list.
+        second: usize,
+    },
+    /// A spline was asked over a range without extent.
+    #[error("{values} values without two different ones span no range for a spline; give more values")]
+    NoRange {
+        /// Number of values.
+        values: usize,
+    },
+    /// A monotone spline of degree 0 is no curve.
+    #[error("a monotone spline has degree 1 or more, not 0; 2 is usual")]
+    BadDegree,
 }

@@ -6,30 +6,43 @@
 
 mod classical;
 mod closure;
+mod distance_rows;
 mod distances;
 mod eigen;
 mod error;
+mod fastmap;
+mod isotonic;
 mod laplacian;
 mod newton;
+mod nnls;
 mod pairs;
+mod pivot;
 mod procrustes;
 mod similarity;
 mod smacof;
 mod solve;
+mod spline;
+mod spring;
 mod stress;
 mod synchronise;
 
 pub use classical::{ClassicalScaling, classical_scaling};
+pub use distance_rows::{DistanceRows, ShortestPaths};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
+pub use fastmap::fastmap;
+pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
 pub use newton::newton;
 pub use pairs::{Pair, PairDistances};
+pub use pivot::{PivotDistances, landmark_scaling, pivot_scaling};
 pub use procrustes::{
     Correspondence, ProcrustesFit, ProcrustesOptions, Reflection, RobustFit, procrustes, robust_procrustes,
 };
 pub use similarity::Similarity;
 pub use smacof::smacof;
 pub use solve::{Embedding, StopRule, Termination};
+pub use spline::{MonotoneSpline, MonotoneSplineBasis};
+pub use spring::spring_embedding;
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
 

@@ -18,12 +18,23 @@ pub enum MapError {
         /// What is wrong; what to do.
         what: String,
     },
-    /// A file could not be opened, read or written.
+    /// An input file could not be opened or read.
     #[error("{}: {what}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
         /// What was tried and what to do.
+        what: String,
+        /// The system's own words.
+        #[source]
+        source: std::io::Error,
+    },
+    /// An output file could not be written.
+    #[error("{}: cannot be written: {what}", path.display())]
+    Unwritable {
+        /// The file; `-` for standard output.
+        path: PathBuf,
+        /// Why, and what to do.
         what: String,
         /// The system's own words.
         #[source]

@@ -93,7 +93,7 @@ impl LinkGraph {
                 .iter()
                 .filter_map(|link| {
                     place += members[place..].partition_point(|&other| other < link.to);
-                    (members.get(place) == Some(&link.to)).then(|| Link { to: place as u32, ..*link })
+                    (members.get(place) == Some(&link.to)).then_some(Link { to: place as u32, ..*link })
                 })
                 .collect()
         });

@@ -66,7 +66,7 @@ impl GlobalMap {
     /// Writes the map file at `path`, whole or not at all; `-` is standard output.
     ///
     /// # Errors
-    /// [`MapError::Io`] when the path cannot be written.
+    /// [`MapError::Unwritable`] when the path cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), MapError> {
         output::write_whole(path, |out| self.write_json(out))
     }

@@ -41,7 +41,7 @@ impl Output {
     /// Prepares the output at `path`; `-` is standard output.
     ///
     /// # Errors
-    /// [`MapError::Io`] when the path is a folder, is write-protected, or lies in a folder that does
+    /// [`MapError::Unwritable`] when the path is a folder, is write-protected, or lies in a folder that does
     /// not exist or that takes no new file.
     pub fn open(path: &Path) -> Result<Self, MapError> {
         let place = Place::open(path).map_err(|source| failed(path, source))?;
@@ -51,7 +51,7 @@ impl Output {
     /// Writes everything that `contents` produces and puts it in place.
     ///
     /// # Errors
-    /// [`MapError::Io`] when `contents` fails or the system refuses a byte, as a full disk does.
+    /// [`MapError::Unwritable`] when `contents` fails or the system refuses a byte, as a full disk does.
     /// A regular file is then untouched.
     pub fn write(self, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MapError> {
         self.place.write(contents).map_err(|source| failed(&self.path, source))
@@ -125,11 +125,7 @@ fn buffered(to: impl Write, contents: impl FnOnce(&mut dyn Write) -> io::Result<
 }
 
 fn failed(path: &Path, source: io::Error) -> MapError {
-    MapError::Io {
-        path: path.to_owned(),
-        what: format!("cannot be written: {}", remedy(source.kind())),
-        source,
-    }
+    MapError::Unwritable { path: path.to_owned(), what: remedy(source.kind()).to_owned(), source }
 }
 
 /// What the user can do about a refusal of the system.

@@ -98,10 +98,10 @@ pub struct AutoParams {
     pub regions: RegionParams,
     /// When a local map is done. Default 100 steps or a gain of 1e-5: it is a start, not a result.
     pub local_stop: StopParams,
-    /// When the polish is done. Default 60 steps or a gain of 1e-7.
+    /// When the polish is done. Default 40 steps or a gain of 1e-6.
     pub polish_stop: StopParams,
-    /// Most iterations of the refinement by the likelihood of the log. Default 8; 0 leaves the
-    /// configuration of least stress as it is.
+    /// Most iterations of the refinement by the likelihood of the log. Default 4: more gain little,
+    /// and the model of the sensor is never quite true; 0 leaves the configuration of least stress.
     pub refine_iterations: usize,
 }
 
@@ -110,8 +110,8 @@ impl Default for AutoParams {
         Self {
             regions: RegionParams::default(),
             local_stop: StopParams { max_iterations: 100, tolerance: 1e-5 },
-            polish_stop: StopParams { max_iterations: 60, tolerance: 1e-7 },
-            refine_iterations: 8,
+            polish_stop: StopParams { max_iterations: 40, tolerance: 1e-6 },
+            refine_iterations: 4,
         }
     }
 }

@@ -2,15 +2,19 @@
 //!
 //! The log is transposed, so that each landmark knows its steps. The row of a landmark is then
 //! counted in a dense array of N counters, which is the only place where N counters exist: one
-//! array a worker, never N x N. Steps are ascending, so the partners below a landmark are the
-//! begin of each of its steps; the partners above follow by symmetry.
+//! array a worker, never N x N.
+//!
+//! Both `n_ij` and `n_ji` are counted. Counting one and mirroring it would save additions, but
+//! additions are cheap: the mirror image of a large matrix is written to places all over the
+//! memory, which takes longer than counting.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::CoVisibility;
-use super::symmetric::{LowerRows, Symmetric};
+use super::rows::{RowBlock, Rows};
+use super::tally::Tally;
 use crate::{MapError, Observer, SightingLog, Stage};
 
 /// See [`CoVisibility::count`].
@@ -20,22 +24,20 @@ pub(super) fn count(log: &SightingLog, observer: &dyn Observer) -> Result<CoVisi
     observer.started(Stage::Count, Some(landmarks as u64));
     let appearances = Appearances::new(log, pieces(log), observer)?;
     let sightings: Vec<u32> = (0..landmarks).into_par_iter().map(|i| appearances.count(i)).collect();
-    let lower = balanced_ranges(&sightings, TASKS)
+    let blocks = balanced_ranges(&sightings, TASKS)
         .into_par_iter()
         .map_init(
-            || RowCounter::new(landmarks),
-            |counter, rows| {
+            || Tally::new(landmarks),
+            |tally, rows| {
                 check_interrupt(observer)?;
-                let lower = counter.rows(log, &appearances, rows.clone());
+                let block = count_rows(log, &appearances, tally, rows.clone());
                 observer.advanced(rows.len() as u64);
-                Ok(lower)
+                Ok(block)
             },
         )
         .collect::<Result<Vec<_>, MapError>>()?;
-    drop(appearances);
-    let pairs = Symmetric::from_lower(landmarks, &lower);
     observer.finished(Stage::Count);
-    Ok(CoVisibility { steps: log.steps() as u64, sightings, pairs })
+    Ok(CoVisibility { steps: log.steps() as u64, sightings, pairs: Rows::new(blocks) })
 }
 
 /// Steps are numbered and counted in 32 bits.
@@ -136,57 +138,43 @@ impl Piece {
     }
 }
 
-/// Counts rows; all counters are 0 between two rows.
-struct RowCounter {
-    counters: Vec<u32>,
-    /// Landmarks whose counter is not 0.
-    touched: Vec<u32>,
+/// `n_ij` of all j, for a range of i.
+fn count_rows(
+    log: &SightingLog,
+    appearances: &Appearances,
+    tally: &mut Tally,
+    rows: Range<usize>,
+) -> RowBlock {
+    let mut block = RowBlock::new(rows.start);
+    for row in rows {
+        for piece in &appearances.pieces {
+            for group in piece.steps(row).chunks(GROUP) {
+                add_steps(log, group, tally);
+            }
+        }
+        tally.drain(|partner, count| {
+            if partner as usize != row {
+                block.push(partner, count);
+            }
+        });
+        block.end_row();
+    }
+    block.finish()
 }
 
-impl RowCounter {
-    fn new(landmarks: usize) -> Self {
-        Self { counters: vec![0; landmarks], touched: Vec::new() }
+/// Counts the landmarks of a group of steps.
+///
+/// The steps of a landmark are strewn over the log, so most of the time goes into waiting for
+/// memory. Finding all steps first, and looking at the begin of each, lets these waits overlap.
+fn add_steps(log: &SightingLog, group: &[u32], tally: &mut Tally) {
+    let mut steps: [&[u32]; GROUP] = [&[]; GROUP];
+    for (slot, &step) in steps.iter_mut().zip(group) {
+        *slot = log.step(step as usize);
     }
-
-    /// `n_ij` of all j < i, for a range of i.
-    fn rows(&mut self, log: &SightingLog, appearances: &Appearances, rows: Range<usize>) -> LowerRows {
-        let mut lower = LowerRows::new(rows.start);
-        for row in rows {
-            for piece in &appearances.pieces {
-                for group in piece.steps(row).chunks(GROUP) {
-                    self.add(log, group, row);
-                }
-            }
-            self.touched.sort_unstable();
-            for &partner in &self.touched {
-                lower.push(partner, std::mem::take(&mut self.counters[partner as usize]));
-            }
-            self.touched.clear();
-            lower.end_row();
-        }
-        lower
-    }
-
-    /// Counts the landmarks below `row` of a group of steps.
-    ///
-    /// The steps of a landmark are strewn over the log, so most of the time goes into waiting for
-    /// memory. Finding all steps first, and looking at the begin of each, lets these waits overlap.
-    fn add(&mut self, log: &SightingLog, group: &[u32], row: usize) {
-        let mut steps: [&[u32]; GROUP] = [&[]; GROUP];
-        for (slot, &step) in steps.iter_mut().zip(group) {
-            *slot = log.step(step as usize);
-        }
-        let touch = steps.iter().fold(0, |all, step| all ^ step.first().copied().unwrap_or(0));
-        std::hint::black_box(touch);
-        for step in steps {
-            for &partner in step.iter().take_while(|&&partner| (partner as usize) < row) {
-                let counter = &mut self.counters[partner as usize];
-                if *counter == 0 {
-                    self.touched.push(partner);
-                }
-                *counter += 1;
-            }
-        }
+    let touch = steps.iter().fold(0, |all, step| all ^ step.first().copied().unwrap_or(0));
+    std::hint::black_box(touch);
+    for &landmark in steps.into_iter().flatten() {
+        tally.add(landmark);
     }
 }
 

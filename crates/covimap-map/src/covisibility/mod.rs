@@ -1,9 +1,10 @@
 //! How often each landmark was seen, and how often each two of them together.
 
 mod count;
-mod symmetric;
+mod rows;
+mod tally;
 
-use symmetric::{LowerRows, Symmetric};
+use rows::{RowBlock, Rows};
 
 use crate::{LandmarkId, MapError, Observer, SightingLog};
 
@@ -15,14 +16,15 @@ use crate::{LandmarkId, MapError, Observer, SightingLog};
 pub struct CoVisibility {
     steps: u64,
     sightings: Vec<u32>,
-    pairs: Symmetric,
+    /// Row i: the partners of landmark i and `n_ij` of each.
+    pairs: Rows,
 }
 
 impl CoVisibility {
     /// Counts a log: exact, and the same for any number of threads.
     ///
     /// Time O(sum over steps of k^2) for steps of k landmarks, shared by all threads. The result
-    /// takes 16 bytes a pair; while it is made, 4 bytes a sighting, or 8 bytes a pair, come on top.
+    /// takes 16 bytes a pair; while it is made, 4 bytes a sighting and 4 N a thread come on top.
     /// Tells the observer of [`crate::Stage::Count`], counted in landmarks.
     ///
     /// # Errors
@@ -49,26 +51,25 @@ impl CoVisibility {
         if let Some(i) = sightings.iter().position(|&count| u64::from(count) > steps) {
             return Err(bad(format!("landmark {i} is seen {} times in {steps} steps", sightings[i])));
         }
-        let mut lower: Vec<(u32, u32, u32)> =
-            pairs.into_iter().map(|(a, b, count)| (a.0.max(b.0), a.0.min(b.0), count)).collect();
-        lower.sort_unstable();
-        for &(high, low, count) in &lower {
-            check_pair((low, high), count, &sightings).map_err(bad)?;
+        let mut entries = Vec::new();
+        for (a, b, count) in pairs {
+            check_pair((a.0, b.0), count, &sightings).map_err(bad)?;
+            entries.extend([(a.0, b.0, count), (b.0, a.0, count)]);
         }
-        if let Some(twice) = lower.windows(2).find(|two| (two[0].0, two[0].1) == (two[1].0, two[1].1)) {
-            let (high, low, _) = twice[0];
-            return Err(bad(format!("pair ({low}, {high}) occurs twice; give every pair once")));
+        entries.sort_unstable();
+        if let Some(twice) = entries.windows(2).find(|two| (two[0].0, two[0].1) == (two[1].0, two[1].1)) {
+            let (a, b, _) = twice[0];
+            return Err(bad(format!("pair ({a}, {b}) occurs twice; give every pair once")));
         }
-        let mut rows = LowerRows::new(0);
-        let mut entries = lower.iter().peekable();
+        let mut block = RowBlock::new(0);
+        let mut entries = entries.into_iter().peekable();
         for row in 0..sightings.len() {
-            while let Some((_, low, count)) = entries.next_if(|entry| entry.0 as usize == row) {
-                rows.push(*low, *count);
+            while let Some((_, partner, count)) = entries.next_if(|entry| entry.0 as usize == row) {
+                block.push(partner, count);
             }
-            rows.end_row();
+            block.end_row();
         }
-        let pairs = Symmetric::from_lower(sightings.len(), &[rows]);
-        Ok(Self { steps, sightings, pairs })
+        Ok(Self { steps, sightings, pairs: Rows::new(vec![block]) })
     }
 
     /// Number of landmarks N.
@@ -92,14 +93,13 @@ impl CoVisibility {
     /// Number of unordered pairs seen together at least once.
     #[must_use]
     pub fn pair_count(&self) -> usize {
-        self.pairs.columns.len() / 2
+        self.pairs.entries() / 2
     }
 
     /// The partners of a landmark, ascending, and `n_ij` of each.
     #[must_use]
     pub fn row(&self, id: LandmarkId) -> (&[u32], &[u32]) {
-        let range = self.pairs.starts[id.index()]..self.pairs.starts[id.index() + 1];
-        (&self.pairs.columns[range.clone()], &self.pairs.values[range])
+        self.pairs.row(id.index())
     }
 
     /// `n_ij`; 0 for a pair never seen together, `n_i` for a landmark with itself.
@@ -121,20 +121,18 @@ impl CoVisibility {
 }
 
 /// Whether a pair can have been seen together so often.
-fn check_pair((low, high): (u32, u32), count: u32, sightings: &[u32]) -> Result<(), String> {
-    let Some(&of_high) = sightings.get(high as usize) else {
-        return Err(format!(
-            "pair ({low}, {high}) names a landmark beyond the {} there are",
-            sightings.len()
-        ));
+fn check_pair((a, b): (u32, u32), count: u32, sightings: &[u32]) -> Result<(), String> {
+    let Some(&of_last) = sightings.get(a.max(b) as usize) else {
+        let landmarks = sightings.len();
+        return Err(format!("pair ({a}, {b}) names a landmark beyond the {landmarks} there are"));
     };
-    let most = of_high.min(sightings[low as usize]);
-    if low == high {
-        Err(format!("pair ({low}, {high}) names one landmark twice"))
+    let most = of_last.min(sightings[a.min(b) as usize]);
+    if a == b {
+        Err(format!("pair ({a}, {b}) names one landmark twice"))
     } else if (1..=most).contains(&count) {
         Ok(())
     } else {
-        Err(format!("pair ({low}, {high}) is seen together {count} times, it can be 1 to {most}"))
+        Err(format!("pair ({a}, {b}) is seen together {count} times, it can be 1 to {most}"))
     }
 }
 

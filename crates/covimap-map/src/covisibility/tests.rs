@@ -112,7 +112,7 @@ fn counts_that_contradict_each_other() {
     let bad = [
         (vec![6, 1], vec![], "landmark 0 is seen 6 times in 5 steps"),
         (vec![2, 1], vec![(id(0), id(1), 2)], "pair (0, 1) is seen together 2 times, it can be 1 to 1"),
-        (vec![2, 1], vec![(id(1), id(0), 0)], "pair (0, 1) is seen together 0 times, it can be 1 to 1"),
+        (vec![2, 1], vec![(id(1), id(0), 0)], "pair (1, 0) is seen together 0 times, it can be 1 to 1"),
         (vec![2, 1], vec![(id(1), id(1), 1)], "pair (1, 1) names one landmark twice"),
         (
             vec![2, 1],

@@ -64,8 +64,11 @@ const SENSOR_STEPS: usize = 5;
 const SENSOR_SETS: usize = 4096;
 /// Longest move of a landmark in one iteration, as a share of the range.
 const LONGEST_MOVE: f64 = 0.2;
+/// Landmarks move by this many scoring steps at once: the place of a step follows its landmarks
+/// only in part, so that single steps fall short.
+const RELAXED: f64 = 1.5;
 /// Done when the landmarks move by less than this share of the range in the mean.
-const STILL: f64 = 2e-3;
+const STILL: f64 = 3e-3;
 
 /// Positions and detectabilities under refinement.
 pub(crate) struct Model {
@@ -109,7 +112,7 @@ impl Model {
         let mut length = 0.0;
         for ((point, p), scores) in self.points.iter_mut().zip(&mut self.detectability).zip(scores) {
             let step = scores.step(longest);
-            *point = [point[0] + step[0], point[1] + step[1]];
+            *point = [point[0] + RELAXED * step[0], point[1] + RELAXED * step[1]];
             *p = scores.improved_detectability(*p, self.sensor.detectability);
             length += step[0].hypot(step[1]);
         }

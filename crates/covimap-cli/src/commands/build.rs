@@ -1,0 +1,225 @@
+//! `covimap build`: the main job, a log in and a map out.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::ValueEnum;
+use covimap_map::{
+    GlobalMap, LogFormat, Mapper, MapperParams, Method, Phi, SightingLog, Stage, output::Output,
+};
+
+use crate::console::{self, Console};
+use crate::interrupt::Deferral;
+use crate::options::{LogArgs, ThreadArgs, conflict};
+use crate::progress::{self, Progress};
+use crate::summary;
+
+/// Make a map from one or more logs
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    input: LogArgs,
+    /// Where the map goes; `-` is stdout [default: the log's name with .map.json, in this folder]
+    #[arg(short, long, value_name = "MAP.json")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    /// Print the report as one JSON object on stdout
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Settings {
+    /// Estimator
+    #[arg(long, value_enum, value_name = "METHOD", default_value = "auto")]
+    method: MethodName,
+    /// Seed of every random choice
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+    /// Classical only: distance function [default: phi2]
+    #[arg(long, value_enum, value_name = "PHI")]
+    phi: Option<PhiName>,
+    /// Classical only: factor of the distance function [default: 0.05 for phi1, 0.3 for phi2]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    alpha: Option<f64>,
+    /// Classical only: smallest squared distance [default: 0.1]
+    #[arg(long, value_name = "D2", allow_negative_numbers = true)]
+    lo: Option<f64>,
+    /// Classical only: largest squared distance, that of a pair never seen together [default: 2]
+    #[arg(long, value_name = "D2", allow_negative_numbers = true)]
+    hi: Option<f64>,
+    /// Classical only: no triangle-inequality constraint
+    #[arg(long)]
+    no_tic: bool,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum MethodName {
+    /// Regions, local maps, stitching and polish: the best there is, at any size
+    Auto,
+    /// The CoviMap paper to the letter: dense, for small logs and comparison
+    Classical,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum PhiName {
+    /// alpha (1/f - 1)
+    Phi1,
+    /// -alpha ln f
+    Phi2,
+}
+
+impl Args {
+    pub fn run(self, console: Console) -> anyhow::Result<()> {
+        let mapper = Mapper::new(self.settings.params()?)?;
+        let path = self.output.clone().unwrap_or_else(|| default_output(&self.input.logs[0]));
+        self.check_output(&path)?;
+        self.threads.start()?;
+
+        let progress = Progress::new(console);
+        let log = SightingLog::read(&self.input.logs, self.input.format(), &progress)?;
+        let map = mapper.build(&log, &progress)?;
+        let times = progress.end();
+
+        let deferral = Deferral::new();
+        map.save(&path)?;
+        drop(deferral);
+        console.say(summary::of(map.report()));
+        console.say(times_line(&times));
+        if path != Path::new("-") {
+            console.say(next_steps(&path));
+        }
+        if self.json { Ok(console::print(json(&map, &path, &times))?) } else { Ok(()) }
+    }
+
+    /// Finds out before the work whether its result can be put in place.
+    fn check_output(&self, path: &Path) -> anyhow::Result<()> {
+        if self.json && path == Path::new("-") {
+            return Err(conflict("--json and --output - both want stdout; give the map a file"));
+        }
+        if let Some(log) = self.input.logs.iter().find(|log| same_file(log, path)) {
+            let log = log.display();
+            return Err(conflict(format_args!("the map would replace the log {log}; give another --output")));
+        }
+        // Dropped at once: a build that is killed leaves no temporary file behind.
+        drop(Output::open(path)?);
+        Ok(())
+    }
+}
+
+impl Settings {
+    fn params(&self) -> anyhow::Result<MapperParams> {
+        let mut params = MapperParams::default();
+        params.seed = self.seed;
+        params.method = match self.method {
+            MethodName::Auto => Method::Auto,
+            MethodName::Classical => Method::Classical,
+        };
+        if params.method != Method::Classical
+            && let Some(flag) = self.classical_flag()
+        {
+            return Err(conflict(format_args!(
+                "{flag} is a setting of --method classical; add that or leave {flag} out"
+            )));
+        }
+        let classical = &mut params.classical;
+        classical.alpha = self.alpha;
+        classical.lo = self.lo.unwrap_or(classical.lo);
+        classical.hi = self.hi.unwrap_or(classical.hi);
+        classical.tic = !self.no_tic;
+        if let Some(phi) = self.phi {
+            classical.phi = match phi {
+                PhiName::Phi1 => Phi::Phi1,
+                PhiName::Phi2 => Phi::Phi2,
+            };
+        }
+        Ok(params)
+    }
+
+    /// The first option given that only the classical method reads.
+    fn classical_flag(&self) -> Option<&'static str> {
+        let given = [
+            ("--phi", self.phi.is_some()),
+            ("--alpha", self.alpha.is_some()),
+            ("--lo", self.lo.is_some()),
+            ("--hi", self.hi.is_some()),
+            ("--no-tic", self.no_tic),
+        ];
+        given.into_iter().find_map(|(flag, given)| given.then_some(flag))
+    }
+}
+
+/// The log's name in the current folder, `.map.json` in the place of what tells format and packing.
+fn default_output(log: &Path) -> PathBuf {
+    if log == Path::new("-") {
+        return "stdin.map.json".into();
+    }
+    let mut name = PathBuf::from(log.file_name().unwrap_or_default());
+    if name.extension().is_some_and(|packing| packing == "gz" || packing == "zst") {
+        name.set_extension("");
+    }
+    if LogFormat::from_path(&name).is_some() {
+        name.set_extension("");
+    }
+    name.as_mut_os_string().push(".map.json");
+    name
+}
+
+/// Whether two paths are the same existing file.
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+fn times_line(times: &[(Stage, Duration)]) -> String {
+    let part =
+        |(stage, time): &(Stage, Duration)| format!("{} {:.2} s", progress::name(*stage), time.as_secs_f64());
+    format!("time: {}", times.iter().map(part).collect::<Vec<_>>().join(", "))
+}
+
+fn next_steps(map: &Path) -> String {
+    let map = map.display();
+    format!(
+        "map written to {map}\n\
+         next: covimap info {map}\n      \
+         covimap export {map} --to svg -o map.svg\n      \
+         covimap evaluate {map} TRUTH.csv"
+    )
+}
+
+fn json(map: &GlobalMap, path: &Path, times: &[(Stage, Duration)]) -> serde_json::Value {
+    let seconds: serde_json::Map<_, _> = times
+        .iter()
+        .map(|(stage, time)| (progress::name(*stage).replace(' ', "_"), time.as_secs_f64().into()))
+        .collect();
+    serde_json::json!({
+        "map": path.display().to_string(),
+        "method": map.params().method,
+        "seed": map.params().seed,
+        "report": map.report(),
+        "seconds": seconds,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_is_named_after_the_log_and_put_in_the_current_folder() {
+        for (log, map) in [
+            ("run.jsonl", "run.map.json"),
+            ("/data/run.2.jsonl.gz", "run.2.map.json"),
+            ("../day.1.csv.zst", "day.1.map.json"),
+            ("walk.txt", "walk.map.json"),
+            ("sightings.log", "sightings.log.map.json"),
+            ("sightings.gz", "sightings.map.json"),
+            ("plain", "plain.map.json"),
+            ("-", "stdin.map.json"),
+        ] {
+            assert_eq!(default_output(Path::new(log)), Path::new(map), "{log}");
+        }
+    }
+}

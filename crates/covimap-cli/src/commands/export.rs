@@ -1,0 +1,69 @@
+//! `covimap export`: a map for other programs, or to look at.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use covimap_map::export::{self, SvgParams};
+use covimap_map::{GlobalMap, Truth, output};
+
+use crate::interrupt::Deferral;
+use crate::options::conflict;
+
+/// Write a map in another format
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Map file; `-` is stdin
+    #[arg(value_name = "MAP.json")]
+    map: PathBuf,
+    /// Format to write
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    to: Target,
+    /// Where it goes; `-` is stdout
+    #[arg(short, long, value_name = "OUT", default_value = "-")]
+    output: PathBuf,
+    /// Svg only: surveyed positions to draw beside the map's own, CSV with the columns id,x,y
+    #[arg(long, value_name = "TRUTH.csv")]
+    truth: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Target {
+    /// Table of landmarks: id,x,y,component and more
+    Csv,
+    /// Picture
+    Svg,
+    /// Landmarks and Delaunay edges for GIS programs
+    Geojson,
+    /// Landmarks and Delaunay edges for graph programs
+    Graphml,
+    /// Landmarks and Delaunay edges for point cloud viewers
+    Ply,
+}
+
+/// Writes one format.
+type Writer<'a> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'a>;
+
+impl Args {
+    pub fn run(self) -> anyhow::Result<()> {
+        if self.truth.is_some() && self.to != Target::Svg {
+            return Err(conflict("--truth is drawn by --to svg alone; leave it out"));
+        }
+        let map = GlobalMap::load(&self.map)?;
+        let write: Writer = match self.to {
+            Target::Csv => Box::new(|out| export::csv(&map, out)),
+            Target::Geojson => Box::new(|out| export::geojson(&map, out)),
+            Target::Graphml => Box::new(|out| export::graphml(&map, out)),
+            Target::Ply => Box::new(|out| export::ply(&map, out)),
+            Target::Svg => {
+                let truth = self.truth.as_deref().map(Truth::read).transpose()?;
+                let mut params = SvgParams::default();
+                params.truth = truth.as_ref();
+                let picture = export::svg(&map, &params)?;
+                Box::new(move |out| out.write_all(picture.as_bytes()))
+            }
+        };
+        let _deferral = Deferral::new();
+        Ok(output::write_whole(&self.output, write)?)
+    }
+}

@@ -1,0 +1,71 @@
+//! The commands, one file each.
+
+mod build;
+mod check;
+mod demo;
+mod evaluate;
+mod export;
+mod info;
+
+use clap::{Parser, Subcommand};
+
+use crate::console::Console;
+
+const EXAMPLES: &str = "\
+Examples:
+  covimap demo                                   map a real robot log that is built in
+  covimap build run.jsonl                        write run.map.json
+  covimap export run.map.json --to svg -o run.svg
+  covimap evaluate run.map.json truth.csv
+
+Results go to stdout, messages to stderr.
+Exit codes: 0 done, 1 failure, 2 usage, 3 bad input, 130 interrupted.";
+
+/// A map from a log of which landmarks were seen together
+#[derive(Debug, Parser)]
+#[command(name = "covimap", version, after_help = EXAMPLES)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say nothing but errors
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Build(build::Args),
+    Evaluate(evaluate::Args),
+    Export(export::Args),
+    Info(info::Args),
+    Check(check::Args),
+    Demo(demo::Args),
+}
+
+impl Cli {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Whatever ends the command before its result is out; `exit` tells what they come to.
+    pub fn run(self) -> anyhow::Result<()> {
+        let console = Console { quiet: self.quiet };
+        match self.command {
+            Command::Build(args) => args.run(console),
+            Command::Evaluate(args) => args.run(console),
+            Command::Export(args) => args.run(),
+            Command::Info(args) => args.run(),
+            Command::Check(args) => args.run(console),
+            Command::Demo(args) => args.run(console),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn no_two_options_clash() {
+        super::Cli::command().debug_assert();
+    }
+}

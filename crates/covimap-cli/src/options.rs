@@ -1,0 +1,83 @@
+//! Options that several commands share.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::{CommandFactory, ValueEnum, error::ErrorKind};
+use covimap_map::LogFormat;
+
+use crate::commands::Cli;
+
+/// More threads than any machine that this runs on has cores.
+const MOST_THREADS: usize = 1024;
+
+/// Where sightings come from.
+#[derive(Debug, clap::Args)]
+pub struct LogArgs {
+    /// Logs of sightings, read as one log in this order; `-` is stdin, .gz and .zst are unpacked
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Format of the logs, when their names do not tell
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<FormatName>,
+}
+
+impl LogArgs {
+    pub fn format(&self) -> Option<LogFormat> {
+        self.format.map(LogFormat::from)
+    }
+}
+
+/// How many threads work.
+#[derive(Debug, clap::Args)]
+pub struct ThreadArgs {
+    /// Threads that work at once; the result is the same for any number [default: all cores]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+}
+
+impl ThreadArgs {
+    /// Sets up the pool that all parallel work uses.
+    ///
+    /// # Errors
+    /// When the system does not give that many threads.
+    pub fn start(&self) -> anyhow::Result<()> {
+        let Some(count) = self.threads else { return Ok(()) };
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .build_global()
+            .with_context(|| format!("cannot start {count} threads; ask for fewer with --threads"))
+    }
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count @ 1..=MOST_THREADS) => Ok(count),
+        _ => Err(format!("give a number from 1 to {MOST_THREADS}, or leave --threads out to use all cores")),
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormatName {
+    /// A JSON object a step: {"t": 12.5, "seen": ["A", "B"]}
+    Jsonl,
+    /// Header step,landmark and a sighting a row
+    Csv,
+    /// A step a line, IDs separated by white space
+    Text,
+}
+
+impl From<FormatName> for LogFormat {
+    fn from(name: FormatName) -> Self {
+        match name {
+            FormatName::Jsonl => Self::Jsonl,
+            FormatName::Csv => Self::Csv,
+            FormatName::Text => Self::Text,
+        }
+    }
+}
+
+/// Options that make no sense together; exit code 2.
+pub fn conflict(what: impl std::fmt::Display) -> anyhow::Error {
+    Cli::command().error(ErrorKind::ArgumentConflict, what).into()
+}

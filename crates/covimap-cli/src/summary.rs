@@ -1,0 +1,139 @@
+//! What a person reads about a map.
+
+use std::fmt::Write;
+
+use covimap_map::{BuildReport, ComponentReport, Warning};
+
+use crate::table;
+
+/// IDs shown with a warning.
+const EXAMPLES: usize = 10;
+/// Components shown, the largest ones.
+const COMPONENTS: usize = 10;
+
+/// Size, fit and warnings.
+pub fn of(report: &BuildReport) -> String {
+    let mut text = format!(
+        "{} in {} and {}, {} seen together, from {}",
+        counted(report.landmarks, "landmark"),
+        counted(report.components.len() as u64, "component"),
+        counted(report.regions, "region"),
+        counted(report.pairs, "pair"),
+        counted(report.steps, "step"),
+    );
+    add(&mut text, format_args!("stress-1 {:.4} ({})", report.stress1, kruskal(report.stress1)));
+    for warning in &report.warnings {
+        add(&mut text, self::warning(warning));
+    }
+    text
+}
+
+/// A row a component, the largest ones first.
+pub fn components(components: &[ComponentReport]) -> String {
+    let row = |(number, component): (usize, &ComponentReport)| {
+        vec![
+            number.to_string(),
+            component.landmarks.to_string(),
+            component.regions.to_string(),
+            component.pairs.to_string(),
+            format!("{:.4}", component.stress1),
+            component.iterations.to_string(),
+            if component.converged { "yes" } else { "no" }.to_owned(),
+        ]
+    };
+    let header =
+        table::row(["component", "landmarks", "regions", "pairs", "stress-1", "polish steps", "converged"]);
+    let rows: Vec<_> =
+        [header].into_iter().chain(components.iter().enumerate().take(COMPONENTS).map(row)).collect();
+    let mut text = table::render(&rows);
+    if components.len() > COMPONENTS {
+        add(&mut text, format_args!("and {} smaller ones", components.len() - COMPONENTS));
+    }
+    text
+}
+
+/// J. B. Kruskal's words for a value of stress-1 (Psychometrika 29, 1964); each holds up to its bound.
+pub fn kruskal(stress1: f64) -> &'static str {
+    match stress1 {
+        s if s <= 0.025 => "excellent",
+        s if s <= 0.05 => "good",
+        s if s <= 0.1 => "fair",
+        _ => "poor",
+    }
+}
+
+/// `1 landmark`, `2 landmarks`.
+pub fn counted(count: u64, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+fn warning(warning: &Warning) -> String {
+    let Warning { kind, count, examples, message } = warning;
+    let mut text = format!("warning: {kind} ({count}): {message}");
+    if !examples.is_empty() {
+        let more = if *count > EXAMPLES.min(examples.len()) as u64 { ", ..." } else { "" };
+        let shown: Vec<_> = examples.iter().take(EXAMPLES).map(String::as_str).collect();
+        add(&mut text, format_args!("  {}{more}", shown.join(", ")));
+    }
+    text
+}
+
+fn add(text: &mut String, line: impl std::fmt::Display) {
+    write!(text, "\n{line}").expect("a string takes all text (bug in covimap)");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kruskals_words_hold_up_to_their_bounds() {
+        for (stress1, word) in
+            [(0.0, "excellent"), (0.025, "excellent"), (0.026, "good"), (0.1, "fair"), (0.101, "poor")]
+        {
+            assert_eq!(kruskal(stress1), word);
+        }
+    }
+
+    #[test]
+    fn a_report_names_sizes_fit_and_the_first_ids_of_each_warning() {
+        let names = (1..=12).map(|number| format!("L{number}")).collect();
+        let report = BuildReport {
+            steps: 40,
+            sightings: 99,
+            landmarks: 25,
+            pairs: 1,
+            regions: 2,
+            stress1: 0.031,
+            components: Vec::new(),
+            warnings: vec![Warning {
+                kind: "seen_once".into(),
+                count: 20,
+                examples: names,
+                message: "seen in a single step; log them more often".into(),
+            }],
+        };
+        assert_eq!(
+            of(&report),
+            "25 landmarks in 0 components and 2 regions, 1 pair seen together, from 40 steps\n\
+             stress-1 0.0310 (good)\n\
+             warning: seen_once (20): seen in a single step; log them more often\n  \
+             L1, L2, L3, L4, L5, L6, L7, L8, L9, L10, ..."
+        );
+    }
+
+    #[test]
+    fn only_the_largest_components_get_a_row() {
+        let one = ComponentReport {
+            landmarks: 2,
+            regions: 1,
+            pairs: 1,
+            stress1: 0.0,
+            iterations: 3,
+            converged: false,
+        };
+        let text = components(&vec![one; 12]);
+        assert_eq!(text.lines().count(), 12);
+        assert!(text.ends_with("and 2 smaller ones"), "{text}");
+    }
+}

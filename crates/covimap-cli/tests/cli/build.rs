@@ -1,0 +1,133 @@
+//! `covimap build`.
+
+use crate::scratch::{SQUARE, Scratch, data, robot_log};
+
+/// A walk along a wall with 400 numbered posts, of which eight are in sight: several regions.
+fn long_wall() -> String {
+    let step = |first: usize| {
+        let seen: Vec<_> = (first..first + 8 - first % 3).map(|post| format!("\"P{post}\"")).collect();
+        format!("{{\"seen\": [{}]}}\n", seen.join(", "))
+    };
+    (0..392).map(step).collect()
+}
+
+#[test]
+fn a_log_alone_is_enough() {
+    let scratch = Scratch::with_square();
+    let run = scratch.succeeds(&["build", "square.jsonl"]);
+    assert_eq!(run.stdout, "");
+    assert_eq!(scratch.names(), ["square.jsonl", "square.map.json"]);
+    for part in [
+        "4 landmarks in 1 component and 1 region, 5 pairs seen together, from 6 steps\nstress-1 0.",
+        "\ntime: read 0.",
+        "map written to square.map.json\nnext: covimap info square.map.json\n",
+    ] {
+        assert!(run.stderr.contains(part), "{part:?} is not in {}", run.stderr);
+    }
+    let map: serde_json::Value = serde_json::from_str(&scratch.read("square.map.json")).unwrap();
+    assert_eq!(map["format"], 1);
+    assert_eq!(map["method"], "auto");
+    let ids: Vec<_> = map["landmarks"].as_array().unwrap().iter().map(|row| row["id"].as_str()).collect();
+    assert_eq!(ids, [Some("A"), Some("B"), Some("C"), Some("D")]);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let scratch = Scratch::with_square();
+    assert_eq!(scratch.succeeds(&["build", "-q", "square.jsonl"]).stderr, "");
+    assert_eq!(scratch.succeeds(&["--quiet", "build", "square.jsonl"]).stderr, "");
+}
+
+#[test]
+fn a_dash_puts_the_map_and_nothing_else_on_stdout() {
+    let scratch = Scratch::with_square();
+    let run = scratch.succeeds(&["build", "square.jsonl", "-o", "-"]);
+    assert_eq!(run.json()["format"], 1);
+    assert!(!run.stderr.contains("next:"), "{}", run.stderr);
+    assert_eq!(scratch.names(), ["square.jsonl"]);
+    scratch.succeeds(&["build", "square.jsonl", "-o", "map.json"]);
+    assert_eq!(scratch.read("map.json"), run.stdout);
+}
+
+#[test]
+fn json_reports_in_one_object() {
+    let scratch = Scratch::with_square();
+    let report = scratch.succeeds(&["build", "square.jsonl", "--json", "--seed", "7"]).json();
+    assert_eq!(report["map"], "square.map.json");
+    assert_eq!(report["method"], "auto");
+    assert_eq!(report["seed"], 7);
+    assert_eq!(report["report"]["landmarks"], 4);
+    assert!(report["seconds"]["read"].is_f64(), "{report}");
+}
+
+#[test]
+fn the_bytes_of_a_map_do_not_depend_on_the_number_of_threads() {
+    let scratch = Scratch::new();
+    scratch.file("wall.jsonl", long_wall());
+    scratch.file("robot.jsonl", robot_log());
+    for log in ["wall.jsonl", "robot.jsonl"] {
+        for method in ["auto", "classical"] {
+            let map = |threads: &str| {
+                let options = ["--method", method, "--threads", threads, "-o", "-", "-q"];
+                scratch.succeeds(&[&["build", log], &options[..]].concat()).stdout
+            };
+            let one = map("1");
+            assert!(one == map("2") && one == map("7"), "{log} {method}");
+        }
+    }
+    let map = scratch.succeeds(&["build", "wall.jsonl", "-o", "-", "-q"]).json();
+    assert!(map["report"]["regions"].as_u64() > Some(1), "the log is to have several regions");
+}
+
+#[test]
+fn several_logs_are_one_log_in_the_order_given() {
+    let scratch = Scratch::with_square();
+    let lines: Vec<_> = SQUARE.lines().collect();
+    scratch.file("first.jsonl", lines[..2].join("\n"));
+    scratch.file("second.txt", "C D\nD A\nA B C\nC D A\n");
+    scratch.succeeds(&["build", "first.jsonl", "second.txt", "-q"]);
+    scratch.succeeds(&["build", "square.jsonl", "-q"]);
+    assert_eq!(scratch.read("first.map.json"), scratch.read("square.map.json"));
+}
+
+#[test]
+fn every_setting_of_the_classical_method_reaches_the_map() {
+    let scratch = Scratch::with_square();
+    let map = |options: &[&str]| {
+        let fixed = ["build", "square.jsonl", "--method", "classical", "-o", "-", "-q"];
+        scratch.succeeds(&[&fixed[..], options].concat()).json()
+    };
+    let plain = map(&[]);
+    assert_eq!(plain["method"], "classical");
+    let wanted = serde_json::json!({ "phi": "phi2", "alpha": null, "lo": 0.1, "hi": 2.0, "tic": true });
+    assert_eq!(plain["settings"]["classical"], wanted);
+    for (options, key, value) in [
+        (&["--phi", "phi1"][..], "phi", serde_json::json!("phi1")),
+        (&["--alpha", "0.5"], "alpha", serde_json::json!(0.5)),
+        (&["--lo", "0.3"], "lo", serde_json::json!(0.3)),
+        (&["--hi", "0.6"], "hi", serde_json::json!(0.6)),
+        (&["--no-tic"], "tic", serde_json::json!(false)),
+    ] {
+        let changed = map(options);
+        assert_eq!(changed["settings"]["classical"][key], value);
+        if key != "tic" {
+            assert_ne!(changed["landmarks"], plain["landmarks"], "{key} changes nothing");
+        }
+    }
+}
+
+#[test]
+fn warnings_name_landmarks() {
+    let scratch = Scratch::new();
+    scratch.file("log.txt", "A B C D\nB C D\nC D\nA B\nA D\nD E\n");
+    let run = scratch.succeeds(&["build", "log.txt"]);
+    assert!(run.stderr.contains("warning: seen_once (1): "), "{}", run.stderr);
+    assert!(run.stderr.contains("\n  E\n"), "{}", run.stderr);
+}
+
+#[test]
+fn the_map_of_a_log_elsewhere_comes_into_the_current_folder() {
+    let scratch = Scratch::new();
+    scratch.succeeds(&["build", data("mrclam-1.jsonl").to_str().unwrap(), "-q"]);
+    assert_eq!(scratch.names(), ["mrclam-1.map.json"]);
+}

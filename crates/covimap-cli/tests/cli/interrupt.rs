@@ -1,0 +1,74 @@
+//! Ctrl-C.
+
+#![cfg(unix)]
+
+use std::io::Write;
+use std::process::{Child, Command, Stdio};
+
+use crate::scratch::{SQUARE, Scratch};
+
+/// A run that reads an endless input.
+fn endless(scratch: &Scratch, arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_covimap"))
+        .current_dir(scratch.path())
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+const BUILD: &[&str] = &["build", "-", "-o", "map.json"];
+
+fn signal(run: &Child, name: &str) {
+    let sent = Command::new("kill").args([&format!("-{name}"), &run.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+#[test]
+fn an_interrupted_build_leaves_nothing_behind() {
+    for name in ["INT", "TERM"] {
+        let scratch = Scratch::new();
+        let mut run = endless(&scratch, BUILD);
+        let mut log = run.stdin.take().unwrap();
+        let block = SQUARE.repeat(10_000);
+        // More than a pipe holds: the program is reading now.
+        log.write_all(block.as_bytes()).unwrap();
+        signal(&run, name);
+        while log.write_all(block.as_bytes()).is_ok() {}
+        let output = run.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130));
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(said, "covimap: stopping; once more stops at once\ncovimap: interrupted\n");
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), "");
+        assert!(scratch.names().is_empty());
+    }
+}
+
+#[test]
+fn a_command_that_cannot_stop_by_itself_ends_at_once() {
+    let scratch = Scratch::new();
+    let mut run = endless(&scratch, &["info", "-"]);
+    let mut map = run.stdin.take().unwrap();
+    // More than a pipe holds: the program is reading now.
+    map.write_all(&vec![b' '; 1 << 20]).unwrap();
+    signal(&run, "INT");
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    drop(map);
+}
+
+#[test]
+fn a_second_interrupt_ends_a_build_that_waits() {
+    let scratch = Scratch::new();
+    let mut run = endless(&scratch, BUILD);
+    let mut log = run.stdin.take().unwrap();
+    log.write_all(SQUARE.repeat(10_000).as_bytes()).unwrap();
+    // The log stays open and says no more, so the program waits for it.
+    while run.try_wait().unwrap().is_none() {
+        signal(&run, "INT");
+    }
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(scratch.names().is_empty());
+    drop(log);
+}

@@ -1,0 +1,18 @@
+//! The command line from outside: exit codes, messages, files.
+
+// Clippy takes only functions marked as tests for tests.
+#![allow(clippy::unwrap_used)]
+
+mod bad_input;
+mod build;
+mod check;
+mod demo;
+mod evaluate;
+mod export;
+mod info;
+mod interrupt;
+mod output;
+mod readme;
+mod scratch;
+mod streams;
+mod usage;

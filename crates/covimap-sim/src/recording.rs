@@ -1,0 +1,49 @@
+//! A run kept in memory.
+
+use crate::geometry::Pose;
+use crate::simulation::Step;
+
+/// All observations of a run, in order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Recording {
+    poses: Vec<Pose>,
+    seen: Vec<u32>,
+    /// Where the list of each step ends in `seen`.
+    ends: Vec<usize>,
+}
+
+impl Recording {
+    /// Appends an observation.
+    pub fn push(&mut self, step: Step<'_>) {
+        self.poses.push(step.pose);
+        self.seen.extend_from_slice(step.seen);
+        self.ends.push(self.seen.len());
+    }
+
+    /// Number of observations.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// Whether there is no observation.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// The observation with this number, counted from 0.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    #[must_use]
+    pub fn step(&self, number: usize) -> Step<'_> {
+        let start = if number == 0 { 0 } else { self.ends[number - 1] };
+        Step { pose: self.poses[number], seen: &self.seen[start..self.ends[number]] }
+    }
+
+    /// All observations in order; `.take(n)` is the log as it was after `n` steps.
+    pub fn steps(&self) -> impl ExactSizeIterator<Item = Step<'_>> {
+        (0..self.len()).map(|number| self.step(number))
+    }
+}
