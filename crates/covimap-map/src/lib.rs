@@ -7,6 +7,8 @@ mod delaunay;
 mod error;
 pub mod evaluate;
 pub mod export;
+#[cfg(test)]
+mod fixtures;
 mod global_map;
 mod landmarks;
 mod links;

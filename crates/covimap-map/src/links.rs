@@ -54,7 +54,7 @@ impl LinkGraph {
         Self::from_rows(rows)
     }
 
-    fn from_rows(rows: Vec<Vec<Link>>) -> Self {
+    pub(crate) fn from_rows(rows: Vec<Vec<Link>>) -> Self {
         let mut starts = Vec::with_capacity(rows.len() + 1);
         starts.push(0);
         let mut links = Vec::with_capacity(rows.iter().map(Vec::len).sum());
@@ -171,3 +171,6 @@ fn link(to: u32, n_i: f64, n_j: f64, both: f64) -> Link {
     let frequency = (both + 0.5) / (n_i + n_j - both + 1.0);
     Link { to, distance: (-ALPHA * frequency.ln()).sqrt(), weight: both.sqrt() }
 }
+
+#[cfg(test)]
+mod tests;

@@ -30,3 +30,6 @@ pub(crate) fn path_scaling(pairs: &PairDistances) -> Result<Vec<Point>, EmbedErr
     let paths = DistanceMatrix::from_pairs(pairs).metric_closure();
     Ok(classical_scaling(&paths.map(|length| length * length)?)?.points)
 }
+
+#[cfg(test)]
+mod tests;

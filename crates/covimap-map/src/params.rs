@@ -58,8 +58,8 @@ pub struct RegionParams {
     /// Landmarks that a core should have, `>= 4`; cores may be somewhat larger. Default 12: small
     /// cores with wide halos fold less, and neighbouring regions share most of their landmarks.
     pub core: usize,
-    /// Most landmarks of a region, halo included, `> core`. A component of at most this many is one
-    /// region. Default 150.
+    /// Most landmarks of a region, halo included, at least twice `core`. A component of at most this
+    /// many is one region. Default 150.
     pub members: usize,
     /// Links into the core that a landmark of the halo must have, `>= 1`. Default 3: fewer leave it
     /// a choice of two places.
@@ -122,8 +122,9 @@ impl AutoParams {
         if self.regions.core < 4 {
             return bad("auto.regions.core", self.regions.core as f64, "at least 4");
         }
-        if self.regions.members <= self.regions.core {
-            return bad("auto.regions.members", self.regions.members as f64, "more than auto.regions.core");
+        if self.regions.members / 2 < self.regions.core {
+            let wanted = "at least twice auto.regions.core";
+            return bad("auto.regions.members", self.regions.members as f64, wanted);
         }
         if self.regions.halo_links == 0 {
             return bad("auto.regions.halo_links", 0.0, "at least 1");

@@ -18,7 +18,12 @@ pub(crate) const TO_THE_END: StopRule = StopRule { max_iterations: 20_000, toler
 
 /// So many cases, the same ones in every run.
 pub(crate) fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() }
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(1),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
 }
 
 pub(crate) fn after(max_iterations: usize) -> StopRule {

@@ -7,15 +7,21 @@
 //! 3. Rounding: every cell's most central landmark becomes a seed, and every landmark goes to the
 //!    seed that is nearest by path; this straightens the ragged rims that growing leaves.
 //!
+//! Merging and rounding let cells grow beyond the size asked for, to twice that as a rule, but not
+//! beyond half of the members that a region may have: around the hub of a star, or where all
+//! distances are alike, small or ragged cells stay as they are.
+//!
 //! # Complexity
 //! `O(m log n)` for `m` links.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::LinkGraph;
+use crate::{LinkGraph, RegionParams};
 
 const UNCLAIMED: u32 = u32::MAX;
+/// Rounds of rounding; further ones change little.
+const ROUNDINGS: usize = 2;
 
 /// Path distances as heap keys: for non-negative floats the order of the bits is that of the values.
 type Key = (Reverse<u64>, Reverse<u32>);
@@ -25,11 +31,16 @@ fn key(distance: f64, landmark: u32) -> Key {
 }
 
 /// The cell of each landmark of a connected graph, cells numbered by their first landmark.
-pub(super) fn grow(graph: &LinkGraph, size: usize) -> Vec<u32> {
-    let mut cell_of = grow_cells(graph, size);
-    merge_small(graph, &mut cell_of, size);
-    for _ in 0..2 {
-        cell_of = nearest_seed(graph, &central_landmarks(graph, &cell_of));
+pub(super) fn grow(graph: &LinkGraph, sizes: RegionParams) -> Vec<u32> {
+    let most = sizes.members / 2;
+    let mut cell_of = grow_cells(graph, sizes.core);
+    merge_small(graph, &mut cell_of, sizes.core, most);
+    for _ in 0..ROUNDINGS {
+        let rounded = nearest_seed(graph, &central_landmarks(graph, &cell_of));
+        if members_of(&rounded).iter().any(|members| members.len() > most) {
+            break;
+        }
+        cell_of = rounded;
     }
     number_by_first(&mut cell_of);
     cell_of
@@ -77,8 +88,9 @@ fn grow_cells(graph: &LinkGraph, size: usize) -> Vec<u32> {
     cell_of
 }
 
-/// Gives cells of less than half the size to the neighbour with the most links, smallest first.
-fn merge_small(graph: &LinkGraph, cell_of: &mut [u32], size: usize) {
+/// Gives cells of less than half the size to the neighbour with the most links that has room for
+/// them, smallest first.
+fn merge_small(graph: &LinkGraph, cell_of: &mut [u32], size: usize, most: usize) {
     let mut members = members_of(cell_of);
     let mut small: Vec<u32> =
         (0..members.len() as u32).filter(|&c| members[c as usize].len() < size / 2).collect();
@@ -91,6 +103,7 @@ fn merge_small(graph: &LinkGraph, cell_of: &mut [u32], size: usize) {
             .iter()
             .flat_map(|&landmark| graph.of(landmark).iter().map(|link| cell_of[link.to as usize]))
             .filter(|&other| other != cell)
+            .filter(|&other| members[other as usize].len() + members[cell as usize].len() <= most)
             .collect();
         neighbours.sort_unstable();
         let best = neighbours.chunk_by(|a, b| a == b).max_by_key(|links| (links.len(), Reverse(links[0])));

@@ -2,7 +2,8 @@
 //!
 //! Every landmark is in the *core* of exactly one region. A region's *members* are its core and a
 //! *halo* of landmarks that are linked to several of the core; the members that two regions share
-//! hold them together when they are stitched. Cores are connected and bounded in size.
+//! hold them together when they are stitched. Cores are connected and take up at most half of the
+//! members that a region may have.
 
 mod cores;
 mod halo;
@@ -29,13 +30,12 @@ impl RegionCover {
     /// Covers a connected graph. A graph of at most `sizes.members` landmarks is one region.
     pub(crate) fn new(graph: &LinkGraph, sizes: RegionParams) -> Self {
         let n = graph.landmarks();
-        let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes.core) };
-        let mut cores = vec![Vec::new(); core_of.iter().max().map_or(0, |&last| last as usize + 1)];
-        for (landmark, &region) in core_of.iter().enumerate() {
-            cores[region as usize].push(landmark as u32);
-        }
-        let regions = halo::add(graph, cores, sizes);
-        Self { regions, core_of }
+        let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes) };
+        let regions = halo::add(graph, &core_of, sizes);
+        let cover = Self { regions, core_of };
+        #[cfg(test)]
+        cover.check_invariants(graph, sizes);
+        cover
     }
 
     /// The regions.
@@ -50,3 +50,6 @@ impl RegionCover {
         &self.core_of
     }
 }
+
+#[cfg(test)]
+mod tests;

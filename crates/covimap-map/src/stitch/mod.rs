@@ -59,3 +59,6 @@ fn blend(landmarks: usize, cover: &RegionCover, maps: &[LocalMap], frames: &[Sim
     }
     sums.iter().map(|[x, y, weight]| [x / weight, y / weight]).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -144,3 +144,6 @@ fn cross_misfit(
     }
     (squares, links)
 }
+
+#[cfg(test)]
+mod tests;
