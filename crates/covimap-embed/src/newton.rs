@@ -64,6 +64,9 @@ pub fn newton_while(
         if iterations == stop.max_iterations {
             break Termination::IterationLimit;
         }
+        if !go_on() {
+            break Termination::Interrupted;
+        }
         iterations += 1;
         let Step { moved, promised } = system.step(pairs, &points, damping.0)?;
         let moved_stress = raw_stress(pairs, &moved);
