@@ -9,6 +9,7 @@ mod exit;
 mod interrupt;
 mod options;
 mod progress;
+mod reproduce;
 mod summary;
 mod table;
 

@@ -6,6 +6,7 @@ mod demo;
 mod evaluate;
 mod export;
 mod info;
+mod reproduce;
 
 use clap::{Parser, Subcommand};
 
@@ -40,6 +41,7 @@ enum Command {
     Info(info::Args),
     Check(check::Args),
     Demo(demo::Args),
+    Reproduce(reproduce::Args),
 }
 
 impl Cli {
@@ -56,6 +58,7 @@ impl Cli {
             Command::Info(args) => args.run(),
             Command::Check(args) => args.run(console),
             Command::Demo(args) => args.run(console),
+            Command::Reproduce(args) => args.run(console),
         }
     }
 }
