@@ -16,11 +16,17 @@
 
 mod accuracy;
 mod catalogue;
+mod claims;
 mod experiment;
+mod figures;
+mod plot;
 mod results;
+mod robot;
 mod runner;
 mod statistics;
+mod summary;
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -28,8 +34,9 @@ use covimap_map::{MapError, Observer, output};
 
 use crate::interrupt::Deferral;
 use crate::progress::Progress;
-use experiment::Experiment;
+use experiment::{Experiment, View};
 use results::Results;
+use robot::Trial;
 
 /// The name that stands for all experiments.
 const ALL: &str = "all";
@@ -48,10 +55,14 @@ pub struct Order {
 }
 
 impl Order {
+    fn wants(&self, experiment: &str) -> bool {
+        self.names.iter().any(|name| name == experiment || name == ALL)
+    }
+
     /// The experiments wanted, in the paper's order.
     fn experiments(&self) -> Vec<Experiment> {
         let mut wanted = catalogue::all();
-        wanted.retain(|experiment| self.names.iter().any(|name| name == experiment.name || name == ALL));
+        wanted.retain(|experiment| self.wants(experiment.name));
         for experiment in &mut wanted {
             experiment.layouts = self.layouts.unwrap_or(experiment.layouts);
             if let Some(most) = self.steps {
@@ -64,7 +75,7 @@ impl Order {
 
 /// Names that can be ordered.
 pub fn names() -> Vec<&'static str> {
-    catalogue::all().iter().map(|experiment| experiment.name).chain([ALL]).collect()
+    catalogue::all().iter().map(|experiment| experiment.name).chain([robot::NAME, ALL]).collect()
 }
 
 /// Runs what is ordered and writes tables, figures and summary into the folder.
@@ -72,16 +83,38 @@ pub fn names() -> Vec<&'static str> {
 /// # Errors
 /// [`MapError::Unwritable`], [`MapError::Interrupted`].
 pub fn run(order: &Order, folder: &Path, progress: &Progress) -> anyhow::Result<()> {
+    fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
     let mut all = Vec::new();
     for experiment in order.experiments() {
         progress.begin(experiment.name, "runs", Some(runner::runs(&experiment)));
         let samples = runner::run(&experiment, order.seed, &|| progress.advanced(1))?;
-        let results = Results { experiment, samples };
-        write(folder, &format!("{}.csv", results.experiment.name), |out| results.write_csv(out))?;
-        all.push(results);
+        all.push(Results { experiment, samples });
+        write_results(all.last().expect("just pushed (bug in covimap)"), folder)?;
     }
-    write(folder, "summary.md", |out| out.write_all(accuracy::table(&all).as_bytes()))?;
+    let trial = order.wants(robot::NAME).then(Trial::new).transpose()?;
+    if let Some(trial) = &trial {
+        write(folder, &format!("{}.csv", robot::NAME), |out| trial.write_csv(out))?;
+        for (name, picture) in trial.pictures()? {
+            write(folder, &name, |out| out.write_all(picture.as_bytes()))?;
+        }
+    }
+    write(folder, "summary.md", |out| out.write_all(summary::text(&all, trial.as_ref()).as_bytes()))?;
     Ok(())
+}
+
+fn write_results(results: &Results, folder: &Path) -> Result<(), MapError> {
+    let Experiment { name, view, .. } = &results.experiment;
+    write(folder, &format!("{name}.csv"), |out| match view {
+        View::Steps | View::Information => results.write_csv(out),
+        View::Exploration => results.write_runs_csv(out),
+    })?;
+    let figure = plot::svg(&figures::figure(results));
+    write(folder, &format!("{name}.svg"), |out| out.write_all(figure.as_bytes()))
+}
+
+fn unwritable(folder: &Path, source: io::Error) -> MapError {
+    let what = "the folder cannot be made; choose another place".to_owned();
+    MapError::Unwritable { path: folder.to_owned(), what, source }
 }
 
 fn write(
