@@ -30,14 +30,14 @@ fn sim1_and_2() -> Vec<Experiment> {
             ..curves(
                 "sim1",
                 "Sim 1: distance functions and constraint",
-                "9",
+                "figure 9",
                 vec![setting("10 objects", room(10))],
             )
         },
         curves(
             "sim2a",
             "Sim 2-A: number of objects",
-            "11",
+            "figure 11",
             [5, 10, 15, 20, 25, 30]
                 .map(|objects| setting(format!("{objects} objects"), room(objects)))
                 .to_vec(),
@@ -45,7 +45,7 @@ fn sim1_and_2() -> Vec<Experiment> {
         curves(
             "sim2b",
             "Sim 2-B: size of the room",
-            "13",
+            "figure 13",
             [1.0, 1.5, 2.0, 2.5, 3.0]
                 .map(|side| setting(format!("{side:.1} m"), SimSpec::paper_room(15, side, STEPS as u64)))
                 .to_vec(),
@@ -58,7 +58,7 @@ fn sim3_and_4() -> Vec<Experiment> {
         curves(
             "sim3a",
             "Sim 3-A: range of turns",
-            "14",
+            "figure 14",
             vary(
                 15,
                 [0.0, 45.0, 90.0],
@@ -71,7 +71,7 @@ fn sim3_and_4() -> Vec<Experiment> {
         curves(
             "sim3b",
             "Sim 3-B: length of a step",
-            "16",
+            "figure 16",
             vary(
                 15,
                 [50.0, 100.0, 200.0, 300.0],
@@ -90,7 +90,7 @@ fn sim3_and_4() -> Vec<Experiment> {
             ..curves(
                 "sim4",
                 "Sim 4: how the observations are spread",
-                "17, 18",
+                "figures 17 and 18",
                 vec![setting("10 objects", room(10))],
             )
         },
@@ -104,7 +104,7 @@ fn sim5_and_6() -> Vec<Experiment> {
             ..curves(
                 "sim5a",
                 "Sim 5-A: objects not recognised",
-                "19",
+                "figure 19",
                 vary(
                     15,
                     [0.0, 3.0, 10.0, 20.0],
@@ -120,7 +120,7 @@ fn sim5_and_6() -> Vec<Experiment> {
             ..curves(
                 "sim5b",
                 "Sim 5-B: objects taken for others",
-                "20",
+                "figure 20",
                 vary(
                     15,
                     [0.0, 0.5, 2.0, 10.0],
@@ -136,7 +136,7 @@ fn sim5_and_6() -> Vec<Experiment> {
             ..curves(
                 "sim6",
                 "Sim 6: angle of view",
-                "21",
+                "figure 21",
                 vary(
                     30,
                     [90.0, 120.0, 180.0, 360.0],
@@ -159,7 +159,7 @@ fn sim7() -> Vec<Experiment> {
         curves(
             "sim7a",
             "Sim 7-A: recognition threshold",
-            "22",
+            "figure 22",
             vary(
                 30,
                 [4.0, 5.0, 6.0, 7.0, 8.0],
@@ -172,7 +172,7 @@ fn sim7() -> Vec<Experiment> {
         curves(
             "sim7b",
             "Sim 7-B: thresholds that differ between objects",
-            "23",
+            "figure 23",
             vary(
                 30,
                 THRESHOLD_RANGES,
@@ -185,7 +185,7 @@ fn sim7() -> Vec<Experiment> {
         curves(
             "sim7c",
             "Sim 7-C: steepness of recognition",
-            "25",
+            "figure 25",
             vary(
                 30,
                 [50.0, 100.0, 200.0, f64::INFINITY],

@@ -10,7 +10,7 @@ pub struct Experiment {
     pub name: &'static str,
     /// Heading of the figure.
     pub title: &'static str,
-    /// Number of the paper's figure.
+    /// The paper's figure, or figures.
     pub figure: &'static str,
     /// What is compared.
     pub settings: Vec<Setting>,

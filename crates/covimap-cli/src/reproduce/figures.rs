@@ -4,7 +4,7 @@
 //! where there is one setting, each method has its colour.
 
 use super::experiment::{MapMethod, Measure, View};
-use super::plot::{Dots, Figure, Key, Line, Look, Mark, Panel};
+use super::plot::{Dots, Figure, Key, Line, Look, Mark, Panel, XAxis};
 use super::results::{CurvePoint, Results};
 use super::runner::Sample;
 use super::statistics;
@@ -24,7 +24,10 @@ pub fn figure(results: &Results) -> Figure {
         View::Steps => Measure::BOTH.map(|measure| curves(results, measure, BY_STEPS)).to_vec(),
         View::Information => {
             let by_information = curves(results, Measure::Orientation, BY_INFORMATION);
-            vec![curves(results, Measure::Orientation, BY_STEPS), Panel { log_x: true, ..by_information }]
+            vec![
+                curves(results, Measure::Orientation, BY_STEPS),
+                Panel { x_axis: XAxis::Logarithmic, ..by_information },
+            ]
         }
         View::Exploration => [BY_SPREAD, BY_ENTROPY]
             .into_iter()
@@ -36,7 +39,7 @@ pub fn figure(results: &Results) -> Figure {
         .zip('a'..)
         .map(|(panel, letter)| Panel { title: format!("({letter}) {}", panel.title), ..panel });
     Figure {
-        title: format!("{} (figure {} of the paper)", results.experiment.title, results.experiment.figure),
+        title: format!("{} ({} of the paper)", results.experiment.title, results.experiment.figure),
         panels: numbered.collect(),
         legend: legend(results),
     }
@@ -75,11 +78,12 @@ fn clouds(results: &Results, measure: Measure, (x_label, x): Axis<Sample>) -> Pa
         }
         marks.push(Mark { look: Look { line: Line::None, ..look }, points });
     }
-    panel(measure, x_label, title.join(", "), marks)
+    let panel = panel(measure, x_label, title.join(", "), marks);
+    Panel { x_axis: XAxis::FromData, ..panel }
 }
 
 fn panel(measure: Measure, x_label: &'static str, title: String, marks: Vec<Mark>) -> Panel {
-    Panel { title, x_label, y_label: measure.name(), log_x: false, marks }
+    Panel { title, x_label, y_label: measure.name(), x_axis: XAxis::FromZero, marks }
 }
 
 fn look(results: &Results, setting: usize, method: usize) -> Look {

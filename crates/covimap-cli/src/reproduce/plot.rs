@@ -38,9 +38,19 @@ pub struct Panel {
     pub title: String,
     pub x_label: &'static str,
     pub y_label: &'static str,
-    /// Whether the x axis is logarithmic; all x are positive then.
-    pub log_x: bool,
+    pub x_axis: XAxis,
     pub marks: Vec<Mark>,
+}
+
+/// Where the x axis begins, and how it is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum XAxis {
+    /// At 0.
+    FromZero,
+    /// Somewhat before the least x.
+    FromData,
+    /// At the least x, which is positive; logarithmic.
+    Logarithmic,
 }
 
 /// A curve or a cloud of dots.
@@ -118,11 +128,12 @@ fn draw(figure: &Figure, rows: usize, page: &Area<'_>) -> Drawn {
     let (_, below) = page.split_vertically(TITLE_HEIGHT);
     let (left, legend) = below.split_horizontally(2 * PANEL.0);
     for (panel, area) in figure.panels.iter().zip(left.split_evenly((rows, 2))) {
-        let (xs, top) = ranges(panel);
-        if panel.log_x {
-            draw_panel(panel, &area, (xs[0]..xs[1]).log_scale(), top)?;
-        } else {
-            draw_panel(panel, &area, 0.0..xs[1], top)?;
+        let ([least, greatest], top) = ranges(panel);
+        let margin = 0.05 * (greatest - least);
+        match panel.x_axis {
+            XAxis::FromZero => draw_panel(panel, &area, 0.0..greatest, top)?,
+            XAxis::FromData => draw_panel(panel, &area, least - margin..greatest + margin, top)?,
+            XAxis::Logarithmic => draw_panel(panel, &area, (least..greatest).log_scale(), top)?,
         }
     }
     draw_legend(&figure.legend, &legend)?;
@@ -145,6 +156,7 @@ where
     let mut chart = ChartBuilder::on(area)
         .caption(&panel.title, (FONT, 15).into_font().color(&INK))
         .margin(10)
+        .margin_right(18)
         .x_label_area_size(46)
         .y_label_area_size(58)
         .build_cartesian_2d(xs, 0.0..top)?;
@@ -152,6 +164,8 @@ where
         .configure_mesh()
         .x_desc(panel.x_label)
         .y_desc(panel.y_label)
+        .x_label_formatter(&|&x| number(x))
+        .y_label_formatter(&|&y| number(y))
         .x_labels(6)
         .y_labels(6)
         .max_light_lines(0)
@@ -176,6 +190,11 @@ where
         }
     }
     Ok(())
+}
+
+/// A number without the digits that only rounding put there.
+fn number(value: f64) -> String {
+    ((value * 1e6).round() / 1e6).to_string()
 }
 
 fn draw_legend(keys: &[Key], area: &Area<'_>) -> Drawn {
@@ -204,7 +223,7 @@ fn draw_legend(keys: &[Key], area: &Area<'_>) -> Drawn {
 mod tests {
     use super::*;
 
-    fn figure(log_x: bool) -> Figure {
+    fn figure(x_axis: XAxis) -> Figure {
         let look = Look { colour: 1, line: Line::Solid, dots: Dots::Hollow };
         let mark = Mark { look, points: vec![[10.0, 0.5], [1000.0, 0.25]] };
         let dashed = Mark { look: Look { line: Line::Dashed, dots: Dots::None, ..look }, ..mark.clone() };
@@ -212,7 +231,7 @@ mod tests {
             title: "(a)".into(),
             x_label: "Steps",
             y_label: "Error",
-            log_x,
+            x_axis,
             marks: vec![mark, dashed],
         };
         let key = Key { text: "10 % <missed>".into(), look };
@@ -221,8 +240,8 @@ mod tests {
 
     #[test]
     fn a_figure_has_its_titles_axes_curves_and_legend() {
-        for log_x in [false, true] {
-            let text = svg(&figure(log_x));
+        for x_axis in [XAxis::FromZero, XAxis::FromData, XAxis::Logarithmic] {
+            let text = svg(&figure(x_axis));
             for wanted in ["Two curves", "Steps", "Error", "10 % &lt;missed&gt;", "<polyline"] {
                 assert!(text.contains(wanted), "{wanted}");
             }
@@ -234,13 +253,13 @@ mod tests {
 
     #[test]
     fn a_figure_without_points_is_drawn_empty() {
-        let mut empty = figure(false);
+        let mut empty = figure(XAxis::FromZero);
         empty.panels.iter_mut().for_each(|panel| panel.marks.clear());
         assert!(svg(&empty).contains("Two curves"));
     }
 
     #[test]
     fn axes_reach_over_all_points() {
-        assert_eq!(ranges(&figure(false).panels[0]), ([10.0, 1000.0], 0.525));
+        assert_eq!(ranges(&figure(XAxis::FromZero).panels[0]), ([10.0, 1000.0], 0.525));
     }
 }
