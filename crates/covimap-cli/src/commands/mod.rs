@@ -7,6 +7,7 @@ mod evaluate;
 mod export;
 mod info;
 mod reproduce;
+mod simulate;
 
 use clap::{Parser, Subcommand};
 
@@ -41,6 +42,7 @@ enum Command {
     Info(info::Args),
     Check(check::Args),
     Demo(demo::Args),
+    Simulate(simulate::Args),
     Reproduce(reproduce::Args),
 }
 
@@ -58,6 +60,7 @@ impl Cli {
             Command::Info(args) => args.run(),
             Command::Check(args) => args.run(console),
             Command::Demo(args) => args.run(console),
+            Command::Simulate(args) => args.run(console),
             Command::Reproduce(args) => args.run(console),
         }
     }

@@ -26,7 +26,6 @@ mod runner;
 mod statistics;
 mod summary;
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -83,7 +82,7 @@ pub fn names() -> Vec<&'static str> {
 /// # Errors
 /// [`MapError::Unwritable`], [`MapError::Interrupted`].
 pub fn run(order: &Order, folder: &Path, progress: &Progress) -> anyhow::Result<()> {
-    fs::create_dir_all(folder).map_err(|source| unwritable(folder, source))?;
+    output::make_folder(folder)?;
     let mut all = Vec::new();
     for experiment in order.experiments() {
         progress.begin(experiment.name, "runs", Some(runner::runs(&experiment)));
@@ -110,11 +109,6 @@ fn write_results(results: &Results, folder: &Path) -> Result<(), MapError> {
     })?;
     let figure = plot::svg(&figures::figure(results));
     write(folder, &format!("{name}.svg"), |out| out.write_all(figure.as_bytes()))
-}
-
-fn unwritable(folder: &Path, source: io::Error) -> MapError {
-    let what = "the folder cannot be made; choose another place".to_owned();
-    MapError::Unwritable { path: folder.to_owned(), what, source }
 }
 
 fn write(

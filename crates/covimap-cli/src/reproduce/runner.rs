@@ -146,8 +146,7 @@ fn errors(mapper: &Mapper, log: &SightingLog, truth: &Truth) -> Result<Option<Er
 
 fn truth_of(world: &World) -> Result<Truth, MapError> {
     let mut text = Vec::new();
-    covimap_sim::write_truth(world.landmarks(), world.id_prefix(), &mut text)
-        .expect("memory takes every byte (bug in covimap)");
+    covimap_sim::write_truth(world, &mut text).expect("memory takes every byte (bug in covimap)");
     Truth::parse(&text, "truth")
 }
 
