@@ -13,6 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use covimap_map::MapError;
+use covimap_sim::SimError;
 
 use crate::console::complain;
 
@@ -71,7 +72,8 @@ fn message(error: &anyhow::Error) -> String {
 }
 
 fn code(error: &anyhow::Error) -> u8 {
-    if error.is::<clap::Error>() {
+    // A simulation goes wrong over its settings alone.
+    if error.is::<clap::Error>() || error.is::<SimError>() {
         return USAGE;
     }
     if error.is::<BadLines>() {

@@ -3,12 +3,14 @@
 //! One file a command in `commands`. Results go to standard output, everything else to standard
 //! error; exit codes are given out in one place, `exit`.
 
+mod bundled;
 mod commands;
 mod console;
 mod exit;
 mod interrupt;
 mod options;
 mod progress;
+mod reproduce;
 mod summary;
 mod table;
 

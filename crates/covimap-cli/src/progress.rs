@@ -1,4 +1,4 @@
-//! How a build goes on: bars on a terminal, a plain line now and then elsewhere.
+//! How long work goes on: bars on a terminal, a plain line now and then elsewhere.
 
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
@@ -17,7 +17,7 @@ const PLAIN_EVERY: Duration = Duration::from_secs(10);
 /// Between two pictures of the bar.
 const DRAW_EVERY: Duration = Duration::from_millis(100);
 
-/// Watches a build for the person who started it, and stops it on Ctrl-C.
+/// Watches work for the person who started it, and stops a build on Ctrl-C.
 pub struct Progress {
     state: Arc<Mutex<State>>,
     ticker: Option<Ticker>,
@@ -33,7 +33,8 @@ struct State {
 
 #[derive(Debug, Clone, Copy)]
 struct Running {
-    stage: Stage,
+    name: &'static str,
+    unit: &'static str,
     total: Option<u64>,
     done: u64,
     since: Instant,
@@ -59,6 +60,11 @@ impl Progress {
         Self { state, ticker, _deferral: Deferral::new() }
     }
 
+    /// A piece of work starts; `total` is its amount, where known. [`Observer::advanced`] tells how it goes on.
+    pub fn begin(&self, name: &'static str, unit: &'static str, total: Option<u64>) {
+        lock(&self.state).running = Some(Running { name, unit, total, done: 0, since: Instant::now() });
+    }
+
     /// Ends the display and returns the time that each stage took, in order.
     pub fn end(self) -> Vec<(Stage, Duration)> {
         drop(self.ticker);
@@ -68,7 +74,7 @@ impl Progress {
 
 impl Observer for Progress {
     fn started(&self, stage: Stage, total: Option<u64>) {
-        lock(&self.state).running = Some(Running { stage, total, done: 0, since: Instant::now() });
+        self.begin(name(stage), unit(stage), total);
     }
 
     fn advanced(&self, amount: u64) {
@@ -127,7 +133,7 @@ impl Drop for Ticker {
 /// The bar on the terminal; leaves nothing behind.
 struct Bar {
     bar: ProgressBar,
-    shown: Option<Stage>,
+    shown: Option<&'static str>,
 }
 
 impl Bar {
@@ -136,11 +142,11 @@ impl Bar {
     }
 
     fn draw(&mut self, running: Option<Running>) {
-        let Some(Running { stage, total, done, .. }) = running else { return };
-        if self.shown.replace(stage) != Some(stage) {
+        let Some(Running { name, unit, total, done, .. }) = running else { return };
+        if self.shown.replace(name) != Some(name) {
             self.bar.reset();
-            self.bar.set_message(name(stage));
-            self.bar.set_style(style(stage, total));
+            self.bar.set_message(name);
+            self.bar.set_style(style(unit, total));
         }
         self.bar.set_length(total.unwrap_or(0));
         self.bar.set_position(done);
@@ -154,10 +160,10 @@ impl Drop for Bar {
     }
 }
 
-fn style(stage: Stage, total: Option<u64>) -> ProgressStyle {
-    let template = match (stage, total) {
-        (Stage::Read, Some(_)) => "{msg:<10} {bar:32} {bytes} of {total_bytes}, {eta} left",
-        (Stage::Read, None) => "{msg:<10} {spinner} {bytes}, {elapsed}",
+fn style(unit: &str, total: Option<u64>) -> ProgressStyle {
+    let template = match (unit, total) {
+        (BYTES, Some(_)) => "{msg:<10} {bar:32} {bytes} of {total_bytes}, {eta} left",
+        (BYTES, None) => "{msg:<10} {spinner} {bytes}, {elapsed}",
         (_, Some(_)) => "{msg:<10} {bar:32} {human_pos} of {human_len}, {eta} left",
         (_, None) => "{msg:<10} {spinner} {elapsed}",
     };
@@ -166,9 +172,9 @@ fn style(stage: Stage, total: Option<u64>) -> ProgressStyle {
 
 /// What is going on, as a line of text.
 fn line(running: &Running) -> String {
-    let (name, unit, done) = (name(running.stage), unit(running.stage), running.done);
-    let seconds = running.since.elapsed().as_secs();
-    match running.total {
+    let &Running { name, unit, total, done, since } = running;
+    let seconds = since.elapsed().as_secs();
+    match total {
         Some(total) => format!("covimap: {name}: {done} of {total} {unit}, {seconds} s"),
         None if done > 0 => format!("covimap: {name}: {done} {unit}, {seconds} s"),
         None => format!("covimap: {name}: {seconds} s"),
@@ -189,9 +195,12 @@ pub fn name(stage: Stage) -> &'static str {
     }
 }
 
+/// The unit that is shown as kB, MB and so on.
+const BYTES: &str = "bytes";
+
 fn unit(stage: Stage) -> &'static str {
     match stage {
-        Stage::Read => "bytes",
+        Stage::Read => BYTES,
         Stage::Count => "landmarks",
         Stage::Regions | Stage::LocalMaps => "regions",
         Stage::Refine => "iterations at most",
@@ -212,7 +221,7 @@ mod tests {
     use super::*;
 
     fn running(total: Option<u64>, done: u64) -> Running {
-        Running { stage: Stage::LocalMaps, total, done, since: Instant::now() }
+        Running { name: "local maps", unit: "regions", total, done, since: Instant::now() }
     }
 
     #[test]
@@ -229,7 +238,10 @@ mod tests {
         for stage in [Stage::Polish, Stage::Count, Stage::Polish] {
             progress.started(stage, Some(10));
             progress.advanced(4);
-            assert_eq!(lock(&progress.state).running.map(|running| running.done), Some(4));
+            assert_eq!(
+                lock(&progress.state).running.map(|running| (running.name, running.done)),
+                Some((name(stage), 4))
+            );
             progress.finished(stage);
         }
         let stages: Vec<_> = progress.end().into_iter().map(|(stage, _)| stage).collect();

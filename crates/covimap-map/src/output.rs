@@ -54,7 +54,36 @@ impl Output {
     /// [`MapError::Unwritable`] when `contents` fails or the system refuses a byte, as a full disk does.
     /// A regular file is then untouched.
     pub fn write(self, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MapError> {
-        self.place.write(contents).map_err(|source| failed(&self.path, source))
+        self.fill(contents)?.keep()
+    }
+
+    /// Writes everything that `contents` produces, to be put in place later: when another file is complete too.
+    ///
+    /// # Errors
+    /// As [`Output::write`].
+    pub fn fill(
+        mut self,
+        contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Filled, MapError> {
+        match self.place.write(contents) {
+            Ok(()) => Ok(Filled(self)),
+            Err(source) => Err(failed(&self.path, source)),
+        }
+    }
+}
+
+/// An output that is complete but not in place yet. Dropped, a regular file stays as it was.
+#[derive(Debug)]
+pub struct Filled(Output);
+
+impl Filled {
+    /// Puts the output in place.
+    ///
+    /// # Errors
+    /// [`MapError::Unwritable`] when the system refuses.
+    pub fn keep(self) -> Result<(), MapError> {
+        let Output { path, place } = self.0;
+        place.keep().map_err(|source| failed(&path, source))
     }
 }
 
@@ -67,6 +96,14 @@ pub fn write_whole(
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), MapError> {
     Output::open(path)?.write(contents)
+}
+
+/// Makes the folder at `path`, and those that it is in, unless they are there.
+///
+/// # Errors
+/// [`MapError::Unwritable`] when a file stands there or the system refuses.
+pub fn make_folder(path: &Path) -> Result<(), MapError> {
+    fs::create_dir_all(path).map_err(|source| failed(path, source))
 }
 
 impl Place {
@@ -90,17 +127,22 @@ impl Place {
         Ok(Self::Staged(temporary, target))
     }
 
-    fn write(self, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    fn write(&mut self, contents: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         match self {
             Self::Stdout => buffered(io::stdout().lock(), contents),
             Self::Direct(device) => buffered(device, contents),
-            Self::Staged(mut temporary, target) => {
+            Self::Staged(temporary, _) => {
                 buffered(temporary.as_file_mut(), contents)?;
-                temporary.as_file().sync_all()?;
-                temporary.persist(target).map_err(|refused| refused.error)?;
-                Ok(())
+                temporary.as_file().sync_all()
             }
         }
+    }
+
+    fn keep(self) -> io::Result<()> {
+        if let Self::Staged(temporary, target) = self {
+            temporary.persist(target).map_err(|refused| refused.error)?;
+        }
+        Ok(())
     }
 }
 
@@ -131,6 +173,7 @@ fn failed(path: &Path, source: io::Error) -> MapError {
 /// What the user can do about a refusal of the system.
 fn remedy(kind: ErrorKind) -> &'static str {
     match kind {
+        ErrorKind::AlreadyExists => "a file stands where a folder is wanted; choose another place",
         ErrorKind::NotFound | ErrorKind::NotADirectory => {
             "its folder does not exist; create the folder first"
         }
@@ -189,6 +232,30 @@ mod tests {
         );
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(names_in(folder.path()), ["map.json"]);
+    }
+
+    #[test]
+    fn folders_are_made_with_those_that_they_are_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("a/b");
+        make_folder(&deep).unwrap();
+        make_folder(&deep).unwrap();
+        assert!(deep.is_dir());
+        fs::write(folder.path().join("file"), "").unwrap();
+        let refusal = |name: &str| make_folder(&folder.path().join(name)).unwrap_err().to_string();
+        assert!(refusal("file").contains("a file stands where a folder is wanted; choose another place"));
+        assert!(refusal("file/below").contains("its folder does not exist"));
+    }
+
+    #[test]
+    fn an_output_that_is_filled_but_not_kept_leaves_no_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.json");
+        let fill = || Output::open(&path).unwrap().fill(|out| out.write_all(b"new")).unwrap();
+        drop(fill());
+        assert!(names_in(folder.path()).is_empty());
+        fill().keep().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
     }
 
     #[test]

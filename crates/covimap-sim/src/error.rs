@@ -1,8 +1,6 @@
-//! What can go wrong before a simulation starts or while its log is written.
+//! What can go wrong before a simulation starts.
 
-use std::path::PathBuf;
-
-/// Why a world could not be built, a simulation not be set up, or a log not be written.
+/// Why a world could not be built or a simulation not be set up.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
@@ -75,14 +73,5 @@ pub enum SimError {
         patches: usize,
         /// The robot's clearance, metres.
         clearance: f64,
-    },
-    /// A file could not be written.
-    #[error("{}: cannot be written; check the folder, its permissions and the free space", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's own words.
-        #[source]
-        source: std::io::Error,
     },
 }

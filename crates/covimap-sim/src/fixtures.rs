@@ -1,11 +1,14 @@
 //! Small named logs with their truth, for tests: a few kilobytes each, the same for ever.
 
+use covimap_map::JsonlWriter;
+
 use crate::error::SimError;
 use crate::geometry::Point;
-use crate::log_writer::{LogWriter, write_truth};
 use crate::simulation::Simulation;
 use crate::spec::{Floor, SimSpec};
 use crate::world::World;
+
+const MEMORY: &str = "memory takes every byte (bug in covimap)";
 
 /// What was seen, and where the landmarks truly are.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,20 +23,18 @@ impl Fixture {
     /// The log as canonical JSONL; landmark 3 is called `L3`.
     #[must_use]
     pub fn jsonl(&self) -> String {
-        let mut text = Vec::new();
-        let mut writer = LogWriter::new(&mut text, "L");
+        let mut writer = JsonlWriter::new(Vec::new());
         for seen in &self.sets {
-            writer.write(seen).expect("memory takes every byte (bug in covimap)");
+            writer.step(None, seen.iter().map(|number| format!("L{number}"))).expect(MEMORY);
         }
-        String::from_utf8(text).expect("the log is ASCII (bug in covimap)")
+        String::from_utf8(writer.finish().expect(MEMORY)).expect("the log is ASCII (bug in covimap)")
     }
 
     /// The truth as CSV, `id,x,y`.
     #[must_use]
     pub fn truth_csv(&self) -> String {
-        let mut text = Vec::new();
-        write_truth(&self.truth, "L", &mut text).expect("memory takes every byte (bug in covimap)");
-        String::from_utf8(text).expect("the truth is ASCII (bug in covimap)")
+        let rows = self.truth.iter().enumerate().map(|(number, [x, y])| format!("L{number},{x},{y}\n"));
+        ["id,x,y\n".to_owned()].into_iter().chain(rows).collect()
     }
 
     fn simulate(spec: &SimSpec, seed: u64) -> Self {
@@ -127,8 +128,8 @@ mod tests {
 
     #[test]
     fn files_of_the_triangle_read_as_written_here() {
-        assert!(triangle().jsonl().starts_with("{\"seen\":[\"L0\",\"L1\"]}\n"));
-        assert!(triangle().jsonl().ends_with("{\"seen\":[]}\n"));
+        assert!(triangle().jsonl().starts_with("{\"seen\": [\"L0\", \"L1\"]}\n"));
+        assert!(triangle().jsonl().ends_with("{\"seen\": []}\n"));
         assert_eq!(triangle().truth_csv(), "id,x,y\nL0,0,0\nL1,3,0\nL2,0,4\n");
     }
 }

@@ -19,11 +19,11 @@ pub mod fixtures;
 
 mod angle;
 mod error;
+mod files;
 mod floor_plan;
 mod geometry;
 mod grid;
 mod landmarks;
-mod log_writer;
 mod motion;
 mod recording;
 mod seed;
@@ -31,14 +31,13 @@ mod sensor;
 mod simulation;
 mod spec;
 mod tally;
-mod whole_file;
 mod world;
 
 pub use angle::Angle;
 pub use error::SimError;
+pub use files::{OBSERVATIONS, TRUTH, write_files, write_truth};
 pub use floor_plan::{FloorPlan, Portal};
 pub use geometry::{Point, Pose, Rect, Segment};
-pub use log_writer::{LogWriter, write_files, write_truth};
 pub use recording::Recording;
 pub use simulation::{Simulation, Step};
 pub use spec::{ErrorSpec, Floor, Motion, Recognition, RunSpec, SensorSpec, SimSpec, StepSpec, WorldSpec};

@@ -8,16 +8,11 @@ use covimap_map::export::{self, SvgParams};
 use covimap_map::{GlobalMap, LogFormat, Mapper, MapperParams, Method, SightingLog, Silent, Truth, output};
 
 use super::evaluate::errors;
+use crate::bundled::{PAPER_TRIAL, ROBOT_LOG, ROBOT_TRUTH};
 use crate::console::{self, Console};
 use crate::interrupt::Deferral;
 use crate::options::ThreadArgs;
 use crate::{summary, table};
-
-/// Five camera robots among 15 barcoded posts; where it is from stands in `data/README.md`.
-const ROBOT_LOG: &[u8] = include_bytes!("../../data/mrclam-1.jsonl");
-const ROBOT_TRUTH: &[u8] = include_bytes!("../../data/mrclam-1.truth.csv");
-/// Ten lists of coloured cylinders, table V (a) of the CoviMap paper.
-const PAPER_LOG: &[u8] = include_bytes!("../../data/paper-trial-1.jsonl");
 
 /// Map a real robot log that is built in and compare the map with the survey
 #[derive(Debug, clap::Args)]
@@ -64,7 +59,7 @@ fn robot(picture: &Path) -> anyhow::Result<()> {
 }
 
 fn paper(picture: &Path) -> anyhow::Result<()> {
-    let log = SightingLog::read_from(PAPER_LOG, "paper-trial-1.jsonl", Some(LogFormat::Jsonl), &Silent)?;
+    let log = SightingLog::read_from(PAPER_TRIAL, "paper-trial-1.jsonl", Some(LogFormat::Jsonl), &Silent)?;
     let auto = map(&log, Method::Auto)?;
     let mut params = SvgParams::default();
     params.title = Some("Ten looks at six coloured cylinders".to_owned());

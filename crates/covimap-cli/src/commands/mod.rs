@@ -6,6 +6,8 @@ mod demo;
 mod evaluate;
 mod export;
 mod info;
+mod reproduce;
+mod simulate;
 
 use clap::{Parser, Subcommand};
 
@@ -40,6 +42,8 @@ enum Command {
     Info(info::Args),
     Check(check::Args),
     Demo(demo::Args),
+    Simulate(simulate::Args),
+    Reproduce(reproduce::Args),
 }
 
 impl Cli {
@@ -56,6 +60,8 @@ impl Cli {
             Command::Info(args) => args.run(),
             Command::Check(args) => args.run(console),
             Command::Demo(args) => args.run(console),
+            Command::Simulate(args) => args.run(console),
+            Command::Reproduce(args) => args.run(console),
         }
     }
 }

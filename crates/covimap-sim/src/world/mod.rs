@@ -12,6 +12,8 @@ mod two_rooms;
 #[cfg(test)]
 mod tests;
 
+use covimap_map::LandmarkNames;
+
 use crate::error::SimError;
 use crate::floor_plan::FloorPlan;
 use crate::geometry::Point;
@@ -60,10 +62,14 @@ impl World {
         self.diameter
     }
 
-    /// What the ID of each landmark starts with; its number follows.
+    /// The ID of every landmark.
     #[must_use]
-    pub fn id_prefix(&self) -> &str {
-        &self.id_prefix
+    pub fn names(&self) -> LandmarkNames {
+        let mut names = LandmarkNames::default();
+        for number in 0..self.landmarks.len() {
+            names.push(&format!("{}{number}", self.id_prefix));
+        }
+        names
     }
 
     /// The seed of the world, which also gives its landmarks their traits.
