@@ -1,6 +1,6 @@
 //! Logs that are built in; where they are from stands in `data/README.md`.
 
-/// A camera robot among 15 barcoded posts, JSONL.
+/// Five camera robots among 15 barcoded posts, JSONL.
 pub const ROBOT_LOG: &[u8] = include_bytes!("../data/mrclam-1.jsonl");
 /// Where the posts stand, CSV.
 pub const ROBOT_TRUTH: &[u8] = include_bytes!("../data/mrclam-1.truth.csv");
