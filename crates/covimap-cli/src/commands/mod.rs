@@ -42,7 +42,7 @@ enum Command {
     Info(info::Args),
     Check(check::Args),
     Demo(demo::Args),
-    Simulate(simulate::Args),
+    Simulate(Box<simulate::Args>),
     Reproduce(reproduce::Args),
 }
 

@@ -62,7 +62,7 @@ fn sim3_and_4() -> Vec<Experiment> {
             vary(
                 15,
                 [0.0, 45.0, 90.0],
-                |turn| format!("±{turn} deg"),
+                |turn| format!("{turn} deg"),
                 |spec, turn| {
                     spec.run.step.turn = Angle::from_deg(turn);
                 },

@@ -116,8 +116,8 @@ const CLAIMS: [Claim; 33] = [
         "positive: the small room is crowded",
         difference("1.0 m", "1.5 m", 1000, Orientation),
     ),
-    claim("sim3a", "turns, Errdel, 50 steps", "0 deg best from 50 to 100 steps", ranking(50, Delaunay)),
-    claim("sim3a", "turns, Errori, 50 steps", "0 deg best from 50 to 100 steps", ranking(50, Orientation)),
+    claim("sim3a", "turns, Errdel, 100 steps", "0 deg best from 50 to 100 steps", ranking(100, Delaunay)),
+    claim("sim3a", "turns, Errori, 100 steps", "0 deg best from 50 to 100 steps", ranking(100, Orientation)),
     claim(
         "sim3a",
         "turns, Errdel, 1000 steps",
@@ -173,7 +173,7 @@ const CLAIMS: [Claim; 33] = [
         "all on one curve",
         Quantity::AtInformation { measure: Orientation },
     ),
-    claim("sim7a", "thresholds, Errori, 20 steps", "smaller is better", ranking(20, Orientation)),
+    claim("sim7a", "thresholds, Errori, 50 steps", "smaller is better", ranking(50, Orientation)),
     claim(
         "sim7a",
         "thresholds, Errori, 1000 steps",

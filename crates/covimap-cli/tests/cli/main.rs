@@ -13,6 +13,8 @@ mod info;
 mod interrupt;
 mod output;
 mod readme;
+mod reproduce;
 mod scratch;
+mod simulate;
 mod streams;
 mod usage;

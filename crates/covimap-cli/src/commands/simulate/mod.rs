@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use covimap_sim::{Floor, OBSERVATIONS, SimSpec, Simulation, Summary, TRUTH, World, write_files};
+use serde::Serialize;
 
 use crate::console::{self, Console};
 use crate::options::conflict;
@@ -50,10 +51,12 @@ impl Args {
         let simulation = Simulation::new(&world, &spec.run, seed)?;
         let progress = Progress::new(console);
         progress.begin("simulate", "steps", Some(spec.run.steps));
-        let summary = write_files(&world, simulation, &folder, &progress)?;
+        let counts = write_files(&world, simulation, &folder, &progress)?;
         progress.end();
         console.say(format_args!("log and truth written to {}", folder.display()));
-        Ok(console::print(json(&name, seed, &folder, summary))?)
+        let (observations, truth) = (folder.join(OBSERVATIONS), folder.join(TRUTH));
+        let report = Report { world: name, seed, observations, truth, counts };
+        Ok(console::print(serde_json::to_string(&report)?)?)
     }
 
     /// The world of this name, changed by what the options say.
@@ -75,19 +78,15 @@ fn worlds() -> Vec<&'static str> {
     Floor::ALL.iter().map(Floor::name).chain([PAPER_ROOM]).collect()
 }
 
-/// One line: what was made, and the counts of the run.
-fn json(world: &str, seed: u64, folder: &std::path::Path, summary: Summary) -> serde_json::Value {
-    let mut object = serde_json::json!({
-        "world": world,
-        "seed": seed,
-        "observations": folder.join(OBSERVATIONS).display().to_string(),
-        "truth": folder.join(TRUTH).display().to_string(),
-    });
-    let counts = serde_json::to_value(summary).expect("counts are plain numbers (bug in covimap)");
-    if let (Some(object), serde_json::Value::Object(counts)) = (object.as_object_mut(), counts) {
-        object.extend(counts);
-    }
-    object
+/// What was made, and the counts of the run; printed as one line of JSON.
+#[derive(Debug, Serialize)]
+struct Report {
+    world: String,
+    seed: u64,
+    observations: PathBuf,
+    truth: PathBuf,
+    #[serde(flatten)]
+    counts: Summary,
 }
 
 /// Puts an option's value in its place, if it was given, and takes it out of the options.
