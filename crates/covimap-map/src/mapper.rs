@@ -35,11 +35,9 @@ impl Mapper {
     /// all landmarks are always seen together; [`MapError::TooLargeForClassical`];
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
-        observer.started(Stage::Count, Some(log.names().len() as u64));
         let counts = CoVisibility::count(log, observer)?;
         check_information(&counts)?;
         let graph = LinkGraph::from_counts(&counts);
-        observer.finished(Stage::Count);
 
         let components = graph.components();
         let maps = components
@@ -190,3 +188,6 @@ fn report(
         components,
     }
 }
+
+#[cfg(test)]
+mod tests;
