@@ -88,3 +88,6 @@ pub(crate) fn solve(
     }
     Ok(classical_scaling(&squared_distances(counts, members, params)?)?)
 }
+
+#[cfg(test)]
+mod tests;
