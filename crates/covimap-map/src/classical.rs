@@ -89,3 +89,6 @@ pub(crate) fn solve(
     }
     Ok(classical_scaling(&squared_distances(counts, members, params)?)?)
 }
+
+#[cfg(test)]
+mod tests;

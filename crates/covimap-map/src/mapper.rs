@@ -186,3 +186,6 @@ fn report(
         components,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -155,3 +155,6 @@ pub struct MapperParams {
     /// Settings of `classical`; `auto` does not read them.
     pub classical: ClassicalParams,
 }
+
+#[cfg(test)]
+mod tests;

@@ -186,3 +186,6 @@ fn landmark_scores(
     }
     Ok(landmarks)
 }
+
+#[cfg(test)]
+mod tests;

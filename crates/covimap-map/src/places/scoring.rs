@@ -110,3 +110,6 @@ impl Scores {
         (p + step).clamp(DETECTABILITY.0, DETECTABILITY.1)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,7 +31,7 @@ pub struct ComponentReport {
     pub pairs: u64,
     /// Kruskal's stress-1 of the final positions over those pairs; 0 is perfect.
     pub stress1: f64,
-    /// Majorisation steps of the polish.
+    /// Newton steps of the polish.
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,

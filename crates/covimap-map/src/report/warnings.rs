@@ -102,3 +102,6 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
     .into_iter()
     .flatten()
 }
+
+#[cfg(test)]
+mod tests;
