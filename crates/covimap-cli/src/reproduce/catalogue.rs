@@ -241,3 +241,40 @@ fn vary<V: Copy, const N: usize>(
     };
     values.map(changed).to_vec()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_experiment_has_the_papers_number_of_runs() {
+        let runs = |e: &Experiment| (e.name, e.settings.len() as u64 * e.layouts * e.walks);
+        let wanted = [
+            ("sim1", 10),
+            ("sim2a", 30),
+            ("sim2b", 25),
+            ("sim3a", 15),
+            ("sim3b", 20),
+            ("sim4", 50),
+            ("sim5a", 100),
+            ("sim5b", 100),
+            ("sim6", 20),
+            ("sim7a", 25),
+            ("sim7b", 20),
+            ("sim7c", 20),
+        ];
+        assert_eq!(all().iter().map(runs).collect::<Vec<_>>(), wanted);
+    }
+
+    #[test]
+    fn settings_of_an_experiment_differ() {
+        for experiment in all() {
+            for (place, setting) in experiment.settings.iter().enumerate() {
+                let others = &experiment.settings[..place];
+                assert!(
+                    others.iter().all(|other| other.label != setting.label && other.spec != setting.spec)
+                );
+            }
+        }
+    }
+}

@@ -298,3 +298,90 @@ fn interpolated(curve: &[CurvePoint], information: f64, measure: Measure) -> Opt
     let share = (information / start.information).ln() / (end.information / start.information).ln();
     Some(error(start) + share * (error(end) - error(start)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::catalogue;
+    use crate::reproduce::experiment::Experiment;
+    use crate::reproduce::runner::Errors;
+
+    /// Two settings, two runs; at 1000 steps the errors of `classical` are .1 and .3 in the first setting, .2 and
+    /// .5 in the second; `auto` makes half of that.
+    fn results() -> Results {
+        let catalogue = catalogue::all();
+        let mut experiment: Experiment = catalogue.into_iter().find(|e| e.name == "sim6").unwrap();
+        experiment.settings.truncate(2);
+        let sample = |setting, walk, steps, error: f64| Sample {
+            setting,
+            run: (0, walk),
+            steps,
+            information: steps as f64 * if setting == 0 { 1.0 } else { 10.0 },
+            spread: error,
+            entropy: -error,
+            maps: [error, error / 2.0]
+                .map(|error| Errors { landmarks: 5, delaunay: error, orientation: error })
+                .to_vec(),
+        };
+        let samples = vec![
+            sample(0, 0, 1000, 0.1),
+            sample(0, 1, 1000, 0.3),
+            sample(1, 0, 1000, 0.2),
+            sample(1, 1, 1000, 0.5),
+            sample(1, 0, 100, 0.6),
+        ];
+        Results { experiment, samples }
+    }
+
+    fn found(quantity: &Quantity, method: MapMethod) -> Option<String> {
+        quantity.of(&results(), method)
+    }
+
+    #[test]
+    fn quantities_by_hand() {
+        let [first, second] = ["90 deg", "120 deg"];
+        // Runs .1 and .3: mean .2, standard error .1.
+        let errors = Quantity::Errors { setting: first, steps: 1000 };
+        assert_eq!(found(&errors, MapMethod::PAPER).unwrap(), "0.200 ± 0.100 / 0.200 ± 0.100");
+        // Differences .1 and .2 run by run: mean .15, standard error .05.
+        let more = difference(second, first, 1000, Delaunay);
+        assert_eq!(found(&more, MapMethod::PAPER).unwrap(), "15.00 ± 5.00 points");
+        assert_eq!(found(&more, MapMethod::Auto).unwrap(), "7.50 ± 2.50 points");
+        assert_eq!(
+            found(&ranking(1000, Delaunay), MapMethod::PAPER).unwrap(),
+            "90 deg 0.2000, 120 deg 0.3500"
+        );
+        // At 1000 pairs the second setting has .6 after 100 steps, the first .2 after 1000.
+        let level = Quantity::AtInformation { measure: Orientation };
+        assert_eq!(found(&level, MapMethod::PAPER).unwrap(), "1000 pairs: 90 deg 0.2000, 120 deg 0.6000");
+        let falling = correlation(Exploration::Entropy, Delaunay);
+        assert_eq!(found(&falling, MapMethod::Auto).unwrap(), "-1.000");
+        let methods = Quantity::Methods { steps: 1000, measure: Delaunay };
+        assert_eq!(found(&methods, MapMethod::Auto).unwrap(), "auto 0.1000");
+    }
+
+    #[test]
+    fn what_was_not_run_has_no_value() {
+        assert_eq!(found(&ranking(300, Delaunay), MapMethod::PAPER), None);
+        assert_eq!(found(&difference("90 deg", "120 deg", 100, Delaunay), MapMethod::PAPER), None);
+        assert_eq!(found(&difference("90 deg", "3 deg", 1000, Delaunay), MapMethod::PAPER), None);
+        assert_eq!(found(&ranking(1000, Delaunay), MapMethod::Classical(covimap_map::Phi::Phi1, true)), None);
+    }
+
+    #[test]
+    fn every_claim_is_about_settings_and_steps_that_are_run() {
+        let catalogue = catalogue::all();
+        for Claim { experiment, statement, quantity, .. } in &CLAIMS {
+            let experiment = catalogue.iter().find(|known| known.name == *experiment).unwrap();
+            let known = |label: &str| experiment.settings.iter().any(|setting| setting.label == label);
+            let run = |steps: &usize| experiment.steps.contains(steps);
+            let fine = match quantity {
+                Quantity::Errors { setting, steps } => known(setting) && run(steps),
+                Quantity::Difference { of, minus, steps, .. } => known(of) && known(minus) && run(steps),
+                Quantity::Ranking { steps, .. } | Quantity::Methods { steps, .. } => run(steps),
+                Quantity::AtInformation { .. } | Quantity::Correlation { .. } => true,
+            };
+            assert!(fine, "{} {statement}", experiment.name);
+        }
+    }
+}

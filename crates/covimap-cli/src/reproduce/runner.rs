@@ -178,3 +178,57 @@ fn entropy(log: &SightingLog) -> f64 {
     let share = |count: u32| f64::from(count) / log.sightings() as f64;
     -counts.into_iter().map(share).map(|p| p * p.ln()).sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::experiment::MapMethod;
+
+    #[test]
+    fn the_spread_is_the_mean_distance_to_the_nearest_other_place() {
+        // On a line at 0, 1 and 3: 1, 1 and 2.
+        let spread = mean_nearest_distance(&[[0.0, 0.0], [0.0, 1.0], [0.0, 3.0]]);
+        assert!((spread - 4.0 / 3.0).abs() < 1e-15);
+        assert_eq!(mean_nearest_distance(&[[1.0, 1.0]]).to_bits(), 0);
+        assert_eq!(mean_nearest_distance(&[[1.0, 1.0], [1.0, 1.0]]).to_bits(), 0);
+    }
+
+    #[test]
+    fn the_entropy_is_that_of_the_shares_of_all_sightings() {
+        // Shares 1/2, 1/4, 1/4: ln 2 / 2 + 2 ln 4 / 4 = 1.5 ln 2.
+        let log = SightingLog::from_steps([vec!["A", "B"], vec!["A", "C"], vec![]]);
+        assert!((entropy(&log) - 1.5 * 2f64.ln()).abs() < 1e-15);
+        assert!(entropy(&SightingLog::from_steps([["A"], ["A"]])).abs() < 1e-15);
+    }
+
+    #[test]
+    fn pairs_of_a_list() {
+        assert_eq!([0, 1, 2, 5].map(pairs), [0.0, 0.0, 1.0, 10.0]);
+    }
+
+    #[test]
+    fn every_run_of_a_layout_has_its_own_way_through_the_same_world() {
+        assert_eq!(seeds(1, (2, 0)).0, seeds(1, (2, 4)).0);
+        let mut all: Vec<_> = (0..3)
+            .flat_map(|seed| {
+                (0..5).flat_map(move |layout| (0..5).map(move |walk| seeds(seed, (layout, walk)).1))
+            })
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 75);
+    }
+
+    #[test]
+    fn a_log_that_shows_no_two_objects_together_has_no_errors() {
+        let truth = Truth::parse(b"id,x,y\nA,0,0\nB,1,0\nC,0,1\n", "truth").unwrap();
+        let mapper = Mapper::new(MapMethod::PAPER.params()).unwrap();
+        let errors =
+            |steps: &[&[&str]]| errors(&mapper, &SightingLog::from_steps(steps.to_vec()), &truth).unwrap();
+        assert_eq!(errors(&[&["A"], &["B"], &["C"]]), None);
+        assert_eq!(errors(&[&["A", "B"], &["C"]]), None);
+        assert_eq!(errors(&[&["A", "B", "C"]]), None);
+        let three = errors(&[&["A", "B"], &["A", "C"], &["A", "B", "C"]]);
+        assert_eq!(three, Some(Errors { landmarks: 3, delaunay: 0.0, orientation: 0.0 }));
+    }
+}

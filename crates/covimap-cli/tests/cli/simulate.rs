@@ -45,7 +45,7 @@ fn the_seed_alone_decides_over_the_bytes() {
         ["observations.jsonl", "truth.csv"].map(|name| scratch.read(&format!("out/{name}")))
     };
     let first = files(&[]);
-    assert_eq!(files(&["-q"]), first);
+    assert!(files(&["-q"]) == first);
     scratch.succeeds(&[
         "simulate",
         "hall",
@@ -58,7 +58,7 @@ fn the_seed_alone_decides_over_the_bytes() {
         "-o",
         "same",
     ]);
-    assert_eq!(scratch.read("same/observations.jsonl"), first[0]);
+    assert!(scratch.read("same/observations.jsonl") == first[0]);
     scratch.succeeds(&[
         "simulate",
         "hall",
@@ -71,8 +71,8 @@ fn the_seed_alone_decides_over_the_bytes() {
         "-o",
         "other",
     ]);
-    assert_ne!(scratch.read("other/observations.jsonl"), first[0]);
-    assert_ne!(scratch.read("other/truth.csv"), first[1]);
+    assert!(scratch.read("other/observations.jsonl") != first[0]);
+    assert!(scratch.read("other/truth.csv") != first[1]);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn every_world_can_be_simulated() {
 /// The log that an option gives, of the small hall unless another world is named.
 fn log_with(scratch: &Scratch, world: &[&str], option: &str) -> String {
     let world = if world.is_empty() { &["hall", "--landmarks", "40"] } else { world };
-    scratch.succeeds(&[&["simulate"], world, &["--steps", "100", "-o", "out", option]].concat());
+    scratch.succeeds(&[&["simulate"], world, &["--steps", "1000", "-o", "out", option]].concat());
     scratch.read("out/observations.jsonl") + &scratch.read("out/truth.csv")
 }
 
@@ -125,7 +125,7 @@ fn every_option_changes_what_comes_out() {
         (room, &["--side=2", "--density=4", "--threshold=4,8", "--steepness=50", "--recognition=range"]),
         (&["blocks", "--landmarks", "200"], &["--street=2", "--building=3"]),
         (&["spiral", "--landmarks", "200"], &["--corridor=2", "--wall=0.4"]),
-        (&["office", "--landmarks", "400"], &["--room=2", "--door=1.2", "--missing-doors=1"]),
+        (&["office", "--landmarks", "2000"], &["--room=2", "--door=1.2", "--missing-doors=1"]),
         (&["two-rooms", "--landmarks", "100"], &["--door=1.2"]),
         (&["corridor-tree", "--landmarks", "200"], &["--corridor=1.5", "--pitch=4"]),
         (&["hall", "--landmarks", "200", "--motion", "sweep"], &["--lane=1"]),
@@ -133,7 +133,7 @@ fn every_option_changes_what_comes_out() {
     for (world, options) in worlds {
         let plain = log_with(&scratch, world, "-q");
         for option in options {
-            assert_ne!(log_with(&scratch, world, option), plain, "{world:?} {option}");
+            assert!(log_with(&scratch, world, option) != plain, "{world:?} {option}");
         }
     }
 }
