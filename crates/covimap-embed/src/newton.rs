@@ -80,7 +80,7 @@ pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<
             }
         }
     }
-    Ok(Embedding::new(pairs, points, stress, iterations, termination))
+    Ok(Embedding::of_distances(pairs, points, iterations, termination))
 }
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::stress::stress1;
+use crate::stress::FitSums;
 use crate::{EmbedError, PairDistances, Point};
 
 /// When an iterative solver stops.
@@ -10,7 +10,8 @@ use crate::{EmbedError, PairDistances, Point};
 pub struct StopRule {
     /// Most steps, `>= 0`.
     pub max_iterations: usize,
-    /// Converged when a step lowers the stress by less than this share of it, `>= 0`.
+    /// Converged when a step lowers the stress by less than this share of it, `>= 0`, or leaves
+    /// nothing of it but rounding.
     pub tolerance: f64,
 }
 
@@ -27,10 +28,13 @@ pub enum Termination {
 /// A configuration and how it was reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Embedding {
-    /// One point an object; every connected component is centred at the origin.
+    /// One point an object.
     pub points: Vec<Point>,
     /// Raw stress of `points`.
     pub stress: f64,
+    /// Raw stress over `sum w d^2`, in `[0, 1]` at a minimum. Its root is what R's smacof, isoMDS
+    /// and monoMDS call stress.
+    pub normalised_stress: f64,
     /// Stress-1 of `points`.
     pub stress1: f64,
     /// Steps taken.
@@ -40,16 +44,38 @@ pub struct Embedding {
 }
 
 impl Embedding {
+    /// With the stresses that `sums` of `points` make.
     pub(crate) fn new(
-        pairs: &PairDistances,
         points: Vec<Point>,
-        stress: f64,
+        sums: FitSums,
         iterations: usize,
         termination: Termination,
     ) -> Self {
-        let stress1 = stress1(pairs, &points);
-        Self { points, stress, stress1, iterations, termination }
+        Self {
+            points,
+            stress: sums.residual,
+            normalised_stress: sums.normalised(),
+            stress1: sums.stress1(),
+            iterations,
+            termination,
+        }
     }
+
+    /// Against the listed distances.
+    pub(crate) fn of_distances(
+        pairs: &PairDistances,
+        points: Vec<Point>,
+        iterations: usize,
+        termination: Termination,
+    ) -> Self {
+        let sums = FitSums::new(pairs, |k| pairs.pairs()[k].distance, &points);
+        Self::new(points, sums, iterations, termination)
+    }
+}
+
+/// Stress that rounding alone makes: `1e-26 sum w d^2`, that is, distances right to 13 digits.
+pub(crate) fn negligible_stress(pairs: &PairDistances) -> f64 {
+    1e-26 * pairs.pairs().iter().map(|pair| pair.weight * pair.distance * pair.distance).sum::<f64>()
 }
 
 /// Refuses a start that is not one finite point an object.
