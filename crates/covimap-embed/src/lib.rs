@@ -21,6 +21,7 @@ mod nnls;
 mod pairs;
 mod pivot;
 mod procrustes;
+mod relocate;
 mod shepard;
 mod similarity;
 mod smacof;

@@ -26,8 +26,12 @@
 use rayon::prelude::*;
 
 use crate::majorise::{Majorised, Majoriser};
+use crate::relocate::{Alternative, alternatives};
 use crate::stress::FitSums;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Transformation};
+
+/// A relocation is taken if it lowers the stress by more than this share.
+const WORTHWHILE: f64 = 1e-6;
 
 /// Minimises the stress of `pairs` from `start` by relaxed steps: [`Smacof`] for plain distances.
 ///
@@ -68,6 +72,11 @@ pub struct Smacof {
     /// distances with the dissimilarities themselves, which leads from a start that knows nothing
     /// of them to one that does.
     pub warm: bool,
+    /// How many objects, those that promise most, are tried in other places when the loop has
+    /// converged (default: none). Where a map with one of them elsewhere ends lower, it is taken
+    /// and the search begins anew. Each trial is a run of its own: with a few dozen, poor local
+    /// minima become rare, at that many times the cost.
+    pub relocations: usize,
     /// When to stop (default: after 1000 steps, or when one gains less than 1e-9 of the stress).
     pub stop: StopRule,
 }
@@ -75,7 +84,7 @@ pub struct Smacof {
 impl Default for Smacof {
     fn default() -> Self {
         let stop = StopRule { max_iterations: 1000, tolerance: 1e-9 };
-        Self { transformation: Transformation::Ratio, relax: true, warm: false, stop }
+        Self { transformation: Transformation::Ratio, relax: true, warm: false, relocations: 0, stop }
     }
 }
 
@@ -86,7 +95,8 @@ pub struct Scaling {
     pub embedding: Embedding,
     /// One a pair, in the order of the list: what best fits the map.
     pub disparities: Vec<f64>,
-    /// Raw stress of the start and after each step. It never rises.
+    /// Raw stress of the start, after each step, and after each relocation that was taken. It
+    /// never rises.
     pub trace: Vec<f64>,
 }
 
@@ -127,8 +137,7 @@ impl Smacof {
     /// # Ok::<(), covimap_embed::EmbedError>(())
     /// ```
     pub fn from_start(&self, pairs: &PairDistances, start: &[Point]) -> Result<Scaling, EmbedError> {
-        let problem = Majoriser::new(pairs, self)?;
-        Ok(Scaling::new(pairs, problem.run(start, self)?))
+        self.solve(&Majoriser::new(pairs, self)?, pairs, start)
     }
 
     /// Minimises the stress from each start and keeps the best.
@@ -141,7 +150,7 @@ impl Smacof {
         starts: &[Vec<Point>],
     ) -> Result<ComparedStarts, EmbedError> {
         let problem = Majoriser::new(pairs, self)?;
-        let run = |start: &Vec<Point>| Ok(Scaling::new(pairs, problem.run(start, self)?));
+        let run = |start: &Vec<Point>| self.solve(&problem, pairs, start);
         let mut solved = starts.par_iter().map(run).collect::<Result<Vec<Scaling>, EmbedError>>()?;
         let stresses: Vec<f64> = solved.iter().map(|scaling| scaling.embedding.stress).collect();
         let least = (0..stresses.len()).min_by(|&a, &b| stresses[a].total_cmp(&stresses[b]));
@@ -149,6 +158,51 @@ impl Smacof {
             return Err(EmbedError::BadStart { what: "none is given", found: 0, wanted: pairs.objects() });
         };
         Ok(ComparedStarts { best: solved.swap_remove(best_start), best_start, stresses })
+    }
+
+    fn solve(
+        &self,
+        problem: &Majoriser,
+        pairs: &PairDistances,
+        start: &[Point],
+    ) -> Result<Scaling, EmbedError> {
+        let mut best = Scaling::new(pairs, problem.run(start, self)?);
+        if self.relocations > 0 {
+            let warm = Self { warm: true, ..self.clone() };
+            while let Some(better) = warm.relocate(problem, pairs, &best)? {
+                best = better;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The first of the trials that ends below `best`, if one does.
+    fn relocate(
+        &self,
+        problem: &Majoriser,
+        pairs: &PairDistances,
+        best: &Scaling,
+    ) -> Result<Option<Scaling>, EmbedError> {
+        let points = &best.embedding.points;
+        let mut alternatives = alternatives(pairs, points, &best.disparities);
+        alternatives.truncate(self.relocations);
+        let below = (1.0 - WORTHWHILE) * best.embedding.stress;
+        let trial = |alternative: &Alternative| {
+            let mut start = points.clone();
+            start[alternative.object] = alternative.place;
+            let solved = problem.run(&start, self).map(|solved| Scaling::new(pairs, solved));
+            match solved {
+                Ok(solved) if solved.embedding.stress >= below => None,
+                decided => Some(decided),
+            }
+        };
+        let Some(better) = alternatives.par_iter().find_map_first(trial).transpose()? else {
+            return Ok(None);
+        };
+        let mut trace = best.trace.clone();
+        trace.push(better.embedding.stress);
+        let iterations = best.embedding.iterations + better.embedding.iterations;
+        Ok(Some(Scaling { trace, embedding: Embedding { iterations, ..better.embedding }, ..better }))
     }
 }
 

@@ -57,7 +57,7 @@ proptest! {
         let start = random_starts(&pairs, 1, seed).remove(0);
         let size: f64 = pairs.pairs().iter().map(|pair| pair.weight * pair.distance.powi(2)).sum();
         for transformation in all_transformations(&pairs) {
-            let how = Smacof { transformation, relax, warm, stop: after(steps) };
+            let how = Smacof { transformation, relax, warm, relocations: 0, stop: after(steps) };
             let Scaling { embedding, disparities, trace } = how.from_start(&pairs, &start).unwrap();
             for (step, pair) in trace.windows(2).enumerate() {
                 prop_assert!(
