@@ -35,10 +35,11 @@ fn oracle(pairs: &PairDistances, points: &[Point], disparities: &[f64]) -> Force
         let r = distance(points[i], points[j]);
         sums.stress += pair.weight * (e - r).powi(2);
         if r > 0.0 {
-            for axis in 0..2 {
-                let pull = pair.weight * e / r * (points[i][axis] - points[j][axis]);
-                sums.forces[i][axis] += pull;
-                sums.forces[j][axis] -= pull;
+            let pull = pair.weight * e / r;
+            let [x, y] = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
+            for (object, sign) in [(i, pull), (j, -pull)] {
+                let sum = &mut sums.forces[object];
+                *sum = [sum[0] + sign * x, sum[1] + sign * y];
             }
         }
     }
