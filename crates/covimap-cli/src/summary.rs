@@ -131,6 +131,7 @@ mod tests {
             stress1: 0.0,
             iterations: 3,
             converged: false,
+            ..ComponentReport::default()
         };
         let text = components(&vec![one; 12]);
         assert_eq!(text.lines().count(), 12);

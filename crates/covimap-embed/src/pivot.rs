@@ -89,6 +89,11 @@ impl PivotDistances {
         &self.pivots
     }
 
+    /// For each pivot, its distances to all objects.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.rows.iter().map(Vec::as_slice)
+    }
+
     /// Largest distance to a pivot.
     fn largest(&self) -> f64 {
         self.rows.iter().flatten().fold(0.0, |most: f64, &d| most.max(d))

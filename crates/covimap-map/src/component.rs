@@ -4,7 +4,8 @@ use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, 
 use rayon::prelude::*;
 
 use crate::places::{SeenSets, refine};
-use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
+use crate::stitch::{Stitched, stitch};
+use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, SeamsReport, Stage, local_map, shape};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -13,27 +14,63 @@ pub(crate) struct ComponentMap {
     /// Region of whose core each landmark is.
     pub region: Vec<u32>,
     pub regions: usize,
+    /// Branch of each region.
+    pub branch_of: Vec<u32>,
+    pub seams: SeamsReport,
+    pub path_pull: f64,
     pub stress1: f64,
     pub iterations: usize,
     pub converged: bool,
 }
 
-/// Maps a connected component: regions, local maps, stitching, polish.
+/// Maps a connected component: regions, local maps, stitching, polish, refinement.
 pub(crate) fn map_component(
     graph: &LinkGraph,
     sets: &SeenSets,
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    let stage = |stage, total| {
-        observer.started(stage, total);
-        if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+    let (cover, Stitched { points: start, branch_of, seams }) = stitched(graph, params, observer)?;
+
+    begin(observer, Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
+    let pairs = graph.to_pairs();
+    let shape = shape::choose(graph, params, observer)?;
+    let start = shape.start(&pairs, start)?;
+    let polished = polish(&*shape.terms(&pairs)?, &start, params, observer)?;
+    observer.finished(Stage::Polish);
+
+    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
+        polished.points
+    } else {
+        begin(observer, Stage::Refine, Some(params.refine_iterations as u64))?;
+        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
+        observer.finished(Stage::Refine);
+        refined.points
     };
-    stage(Stage::Regions, None)?;
+    Ok(ComponentMap {
+        stress1: stress1(&pairs, &points),
+        iterations: polished.iterations,
+        converged: polished.termination == Termination::Converged,
+        points,
+        region: cover.core_of().to_vec(),
+        regions: cover.regions().len(),
+        branch_of,
+        seams,
+        path_pull: shape.pull,
+    })
+}
+
+/// The first map of a connected graph: regions, each solved by itself, in one frame.
+pub(crate) fn stitched(
+    graph: &LinkGraph,
+    params: &AutoParams,
+    observer: &dyn Observer,
+) -> Result<(RegionCover, Stitched), MapError> {
+    begin(observer, Stage::Regions, None)?;
     let cover = RegionCover::new(graph, params.regions);
     observer.finished(Stage::Regions);
 
-    stage(Stage::LocalMaps, Some(cover.regions().len() as u64))?;
+    begin(observer, Stage::LocalMaps, Some(cover.regions().len() as u64))?;
     let maps = cover
         .regions()
         .par_iter()
@@ -48,34 +85,18 @@ pub(crate) fn map_component(
         .collect::<Result<Vec<_>, MapError>>()?;
     observer.finished(Stage::LocalMaps);
 
-    stage(Stage::Stitch, None)?;
-    let start = stitch::stitch(graph, &cover, &maps)?;
+    begin(observer, Stage::Stitch, None)?;
+    let stitched = stitch(graph, &cover, &maps)?;
     observer.finished(Stage::Stitch);
-
-    stage(Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
-    let pairs = graph.to_pairs();
-    let polished = polish(&pairs, &start, params, observer)?;
-    observer.finished(Stage::Polish);
-
-    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        polished.points
-    } else {
-        stage(Stage::Refine, Some(params.refine_iterations as u64))?;
-        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
-        observer.finished(Stage::Refine);
-        refined.points
-    };
-    Ok(ComponentMap {
-        stress1: stress1(&pairs, &points),
-        iterations: polished.iterations,
-        converged: polished.termination == Termination::Converged,
-        points,
-        region: cover.core_of().to_vec(),
-        regions: cover.regions().len(),
-    })
+    Ok((cover, stitched))
 }
 
-/// Least stress over all links, from the stitched start.
+fn begin(observer: &dyn Observer, stage: Stage, total: Option<u64>) -> Result<(), MapError> {
+    observer.started(stage, total);
+    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+}
+
+/// Least stress over all terms.
 fn polish(
     pairs: &PairDistances,
     start: &[Point],

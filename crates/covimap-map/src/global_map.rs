@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use crate::{BuildReport, LandmarkNames, MapError, MapperParams};
 
 /// Where one landmark was placed, and on what evidence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PlacedLandmark {
     /// Position in map units, in the frame of its component.
     pub position: Point,
@@ -19,6 +19,12 @@ pub struct PlacedLandmark {
     pub sightings: u32,
     /// Number of other landmarks it was seen together with.
     pub partners: u32,
+    /// Branch of its component, 0 being the largest: how landmarks of two branches lie to each other is
+    /// known but for the side, for either branch may be the mirror image of what the map shows.
+    pub branch: u32,
+    /// Whether its links leave it a choice of places: they lead to fewer than three landmarks, or to
+    /// landmarks on a line, on whose other side it may be.
+    pub loose: bool,
 }
 
 /// A finished map. Immutable; frames and units are those of `docs/conventions.md`.
@@ -106,7 +112,7 @@ mod tests {
 
     #[test]
     fn parts_that_contradict_each_other_make_no_map() {
-        let at = |position| PlacedLandmark { position, component: 0, region: 0, sightings: 1, partners: 0 };
+        let at = |position| PlacedLandmark { position, ..PlacedLandmark::default() };
         let refusal = |ids: &[&str], positions: &[Point]| {
             let names = ids.iter().copied().collect();
             let landmarks = positions.iter().copied().map(at).collect();

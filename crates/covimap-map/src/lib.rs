@@ -21,6 +21,7 @@ mod places;
 mod progress;
 mod regions;
 mod report;
+mod shape;
 mod sightings;
 mod stitch;
 mod truth;
@@ -37,7 +38,7 @@ pub use mapper::Mapper;
 pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionParams, StopParams};
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
-pub use report::{BuildReport, ComponentReport, Warning};
+pub use report::{BuildReport, ComponentReport, Hinge, SeamReport, SeamsReport, Warning};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };

@@ -4,7 +4,7 @@
 //!
 //! ```json
 //! {"format":1,"generator":"covimap 0.1.0","method":"auto","seed":0,"settings":{"classical":{}},"landmarks":[
-//! {"id":"L6","x":0.25,"y":-1.5,"component":0,"region":0,"sightings":412,"partners":9}
+//! {"id":"L6","x":0.25,"y":-1.5,"component":0,"region":0,"sightings":412,"partners":9,"branch":0,"loose":false}
 //! ],"report":{"steps":5768}}
 //! ```
 //!
@@ -45,6 +45,10 @@ struct Row<'a> {
     region: u32,
     sightings: u32,
     partners: u32,
+    #[serde(default)]
+    branch: u32,
+    #[serde(default)]
+    loose: bool,
 }
 
 #[derive(Deserialize)]
@@ -145,13 +149,13 @@ impl GlobalMap {
 impl<'a> Row<'a> {
     fn new(id: &'a str, placed: &PlacedLandmark) -> Self {
         let [x, y] = placed.position;
-        let PlacedLandmark { component, region, sightings, partners, .. } = *placed;
-        Self { id: Cow::Borrowed(id), x, y, component, region, sightings, partners }
+        let PlacedLandmark { component, region, sightings, partners, branch, loose, .. } = *placed;
+        Self { id: Cow::Borrowed(id), x, y, component, region, sightings, partners, branch, loose }
     }
 
     fn placed(&self) -> PlacedLandmark {
-        let Self { x, y, component, region, sightings, partners, .. } = *self;
-        PlacedLandmark { position: [x, y], component, region, sightings, partners }
+        let Self { x, y, component, region, sightings, partners, branch, loose, .. } = *self;
+        PlacedLandmark { position: [x, y], component, region, sightings, partners, branch, loose }
     }
 }
 

@@ -6,10 +6,14 @@ use crate::classical;
 use crate::component::{ComponentMap, map_component, put_in_frame};
 use crate::places::SeenSets;
 use crate::report::warnings;
+use crate::stitch::flatness;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
-    MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
+    MapperParams, Method, Observer, PlacedLandmark, SeamsReport, SightingLog, Stage,
 };
+
+/// Least over greatest spread of the partners of a landmark below which they lie on a line.
+const ON_A_LINE: f64 = 0.1;
 
 /// Builds maps with one set of checked parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,8 +52,8 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
-        let report = report(&counts, &graph, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
+        let report = report(&counts, &graph, &components, maps, &landmarks, log);
         GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
     }
 
@@ -111,6 +115,9 @@ fn classical_component(
         region: vec![0; members.len()],
         points,
         regions: 1,
+        branch_of: vec![0],
+        seams: SeamsReport::default(),
+        path_pull: 0.0,
         iterations: 0,
         converged: true,
     })
@@ -135,8 +142,7 @@ fn place(
     components: &[Vec<u32>],
     maps: &[ComponentMap],
 ) -> Vec<PlacedLandmark> {
-    let nowhere = PlacedLandmark { position: [0.0; 2], component: 0, region: 0, sightings: 0, partners: 0 };
-    let mut landmarks = vec![nowhere; graph.landmarks()];
+    let mut landmarks = vec![PlacedLandmark::default(); graph.landmarks()];
     let mut first_region = 0;
     for (component, (members, map)) in components.iter().zip(maps).enumerate() {
         for (place, &landmark) in members.iter().enumerate() {
@@ -147,32 +153,47 @@ fn place(
                 region: first_region + map.region[place],
                 sightings: counts.sightings()[landmark as usize],
                 partners: graph.of(landmark).len() as u32,
+                branch: map.branch_of[map.region[place] as usize],
+                loose: false,
             };
         }
         first_region += map.regions as u32;
     }
+    let loose: Vec<bool> = (0..landmarks.len() as u32).map(|i| is_loose(graph, &landmarks, i)).collect();
+    landmarks.iter_mut().zip(loose).for_each(|(landmark, loose)| landmark.loose = loose);
     landmarks
+}
+
+/// Whether the links of a landmark leave it a choice of places.
+fn is_loose(graph: &LinkGraph, landmarks: &[PlacedLandmark], landmark: u32) -> bool {
+    let links = graph.of(landmark);
+    links.len() < 3 || flatness(links.iter().map(|link| landmarks[link.to as usize].position)) < ON_A_LINE
 }
 
 fn report(
     counts: &CoVisibility,
     graph: &LinkGraph,
     components: &[Vec<u32>],
-    maps: &[ComponentMap],
+    maps: Vec<ComponentMap>,
+    landmarks: &[PlacedLandmark],
     log: &SightingLog,
 ) -> BuildReport {
-    let components: Vec<ComponentReport> = components
-        .iter()
-        .zip(maps)
-        .map(|(members, map)| ComponentReport {
+    let mut first_region = 0;
+    let component = |(members, map): (&Vec<u32>, ComponentMap)| {
+        let seams = map.seams.numbered_from(first_region);
+        first_region += map.regions as u32;
+        ComponentReport {
             landmarks: members.len() as u64,
             regions: map.regions as u64,
             pairs: members.iter().map(|&member| graph.of(member).len() as u64).sum::<u64>() / 2,
             stress1: map.stress1,
             iterations: map.iterations as u64,
             converged: map.converged,
-        })
-        .collect();
+            path_pull: map.path_pull,
+            seams,
+        }
+    };
+    let components: Vec<ComponentReport> = components.iter().zip(maps).map(component).collect();
     let pairs: u64 = components.iter().map(|component| component.pairs).sum();
     let squares: f64 = components.iter().map(|c| c.stress1 * c.stress1 * c.pairs as f64).sum();
     BuildReport {
@@ -182,7 +203,7 @@ fn report(
         pairs,
         regions: components.iter().map(|component| component.regions).sum(),
         stress1: (squares / pairs.max(1) as f64).sqrt(),
-        warnings: warnings(counts, graph, &components, log.names()),
+        warnings: warnings(counts, graph, landmarks, &components, log.names()),
         components,
     }
 }

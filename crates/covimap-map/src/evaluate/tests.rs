@@ -14,6 +14,7 @@ fn map(rows: &[Row]) -> GlobalMap {
         region: component,
         sightings: 1,
         partners: 1,
+        ..PlacedLandmark::default()
     });
     GlobalMap::from_parts(names, placed.collect(), MapperParams::default(), BuildReport::default()).unwrap()
 }

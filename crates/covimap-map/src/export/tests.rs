@@ -13,6 +13,7 @@ pub(super) fn map(rows: &[(&str, Point, u32, u32)]) -> GlobalMap {
         region,
         sightings: 8,
         partners: 2,
+        ..PlacedLandmark::default()
     });
     GlobalMap::from_parts(names, placed.collect(), MapperParams::default(), BuildReport::default()).unwrap()
 }

@@ -4,8 +4,8 @@ use super::*;
 use crate::{ComponentReport, Method, Warning};
 
 const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
-{"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1},
-{"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1}
+{"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1,"branch":0,"loose":false},
+{"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1,"branch":0,"loose":false}
 ],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
 "#;
 
@@ -32,7 +32,7 @@ fn the_file_says_what_the_map_holds() {
     assert_eq!(map.params().seed, 7);
     assert_eq!(map.names().iter().collect::<Vec<_>>(), ["A", "say \"B\""]);
     let expected =
-        PlacedLandmark { position: [1e-7, -0.0], component: 0, region: 1, sightings: 2, partners: 1 };
+        PlacedLandmark { position: [1e-7, -0.0], region: 1, sightings: 2, partners: 1, ..Default::default() };
     assert_eq!(map.landmarks()[1], expected);
     assert_eq!((map.report().steps, map.report().stress1), (4, 0.25));
     assert_eq!(text(&map), SMALL);
@@ -54,7 +54,7 @@ fn a_map_without_landmarks_is_a_map() {
 fn keys_of_later_builds_are_ignored() {
     let later = SMALL
         .replace(r#""seed":7"#, r#""seed":7,"made_on":{"by":["x"]}"#)
-        .replace(r#""partners":1}"#, r#""partners":1,"covariance":[1,0,1]}"#)
+        .replace(r#""loose":false}"#, r#""loose":false,"covariance":[1,0,1]}"#)
         .replace(r#""classical":{"#, r#""polish":{"rounds":8},"classical":{"beta":0.5,"#)
         .replace(r#""steps":4"#, r#""steps":4,"bound":0.05"#);
     assert_eq!(parse(&later).unwrap(), parse(SMALL).unwrap());
@@ -120,7 +120,7 @@ proptest! {
     fn what_is_saved_is_loaded_and_saved_again_the_same(
         rows in prop::collection::btree_map(
             ".{0,8}",
-            (any::<[f64; 2]>().prop_filter("finite", |p| p.iter().all(|v| v.is_finite())), any::<[u32; 4]>()),
+            (any::<[f64; 2]>().prop_filter("finite", |p| p.iter().all(|v| v.is_finite())), any::<[u32; 5]>(), any::<bool>()),
             0..20,
         ),
         seed in any::<u64>(),
@@ -129,15 +129,15 @@ proptest! {
         let names: LandmarkNames = rows.keys().map(String::as_str).collect();
         let landmarks = rows
             .values()
-            .map(|&(position, [component, region, sightings, partners])| {
-                PlacedLandmark { position, component, region, sightings, partners }
+            .map(|&(position, [component, region, sightings, partners, branch], loose)| {
+                PlacedLandmark { position, component, region, sightings, partners, branch, loose }
             })
             .collect();
         let params = MapperParams { seed, ..MapperParams::default() };
         let report = BuildReport {
             stress1,
             components: vec![ComponentReport {
-                landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true,
+                landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true, ..Default::default()
             }],
             warnings: vec![Warning {
                 kind: "seen_once".into(), count: 1, examples: vec!["\u{1F916}".into()], message: "a\nb".into(),

@@ -1,10 +1,12 @@
 //! What a build says about the map it made. Part of the map file, so it holds nothing that
 //! changes from run to run (times go to the [`crate::Observer`]).
 
+mod seams;
 mod warnings;
 
 use serde::{Deserialize, Serialize};
 
+pub use seams::{Hinge, SeamReport, SeamsReport};
 pub(crate) use warnings::warnings;
 
 /// A finding that a reader of the map should know of.
@@ -21,7 +23,7 @@ pub struct Warning {
 }
 
 /// One connected part of the co-visibility graph: a chart of its own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ComponentReport {
     /// Number of landmarks.
     pub landmarks: u64,
@@ -35,6 +37,13 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
+    /// Weight of path lengths against links, 0 where links alone made the map: few links leave its shape
+    /// free, and what is held out of them told that paths help.
+    #[serde(default)]
+    pub path_pull: f64,
+    /// How its regions hang together.
+    #[serde(default)]
+    pub seams: SeamsReport,
 }
 
 /// What was read, what was built, and how good it is.

@@ -1,7 +1,7 @@
 //! Findings in counts and graph that a reader of the map should know of.
 
-use super::{ComponentReport, Warning};
-use crate::{CoVisibility, LandmarkId, LandmarkNames, LinkGraph};
+use super::{ComponentReport, Hinge, Warning};
+use crate::{CoVisibility, LandmarkId, LandmarkNames, LinkGraph, PlacedLandmark};
 
 /// IDs named in a warning; the rest is only counted.
 const EXAMPLES: usize = 10;
@@ -10,6 +10,7 @@ const EXAMPLES: usize = 10;
 pub(crate) fn warnings(
     counts: &CoVisibility,
     graph: &LinkGraph,
+    placed: &[PlacedLandmark],
     components: &[ComponentReport],
     names: &LandmarkNames,
 ) -> Vec<Warning> {
@@ -55,6 +56,12 @@ pub(crate) fn warnings(
              show them with more",
         ),
         warn(
+            "partners_on_a_line",
+            &mut landmarks().filter(|id| placed[id.index()].loose && graph.of(id.0).len() >= 3),
+            "seen together with landmarks on a line only, so that they may lie on its other side; look for steps \
+             that show them with one beside the line",
+        ),
+        warn(
             "twins",
             &mut landmarks().filter(|&id| twin(id)),
             "always seen together with the same other landmark and never without it, so the two cannot be told \
@@ -79,6 +86,9 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
     };
     let several = components.len() > 1;
     let unfinished = components.iter().filter(|component| !component.converged).count();
+    let hinges = || components.iter().flat_map(|component| &component.seams.hinges);
+    let dropped = components.iter().map(|component| component.seams.dropped.len()).sum();
+    let pulled = components.iter().filter(|component| component.path_pull > 0.0).count();
     let tiny = components.len() == 1 && components[0].landmarks <= 3;
     [
         warn(
@@ -86,6 +96,21 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
             if several { components.len() } else { 0 },
             "parts of the log have no sighting in common; each is a chart of its own, and nothing tells how they \
              lie to each other"
+                .to_owned(),
+        ),
+        warn("hinges", hinges().count(), hinges().next().map(hinge_message).unwrap_or_default()),
+        warn(
+            "dropped_seams",
+            dropped,
+            "pairs of overlapping regions contradict the rest of the map in how they lie to each other and were \
+             left out; the map is least sure there"
+                .to_owned(),
+        ),
+        warn(
+            "shape_from_paths",
+            pulled,
+            "components with so few links that links alone leave their shape free; the lengths of paths along \
+             links were used as well, which makes bends and loops too wide"
                 .to_owned(),
         ),
         warn(
@@ -101,6 +126,16 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
     ]
     .into_iter()
     .flatten()
+}
+
+fn hinge_message(first: &Hinge) -> String {
+    let Hinge { seam, landmarks } = first;
+    format!(
+        "places where the side of all that lies beyond is a guess: a part of {landmarks} landmarks hangs on {} that \
+         regions {} and {} share, and its mirror image fits nearly as well; look for steps there that show more \
+         landmarks at once",
+        seam.shared, seam.regions[0], seam.regions[1]
+    )
 }
 
 #[cfg(test)]

@@ -8,30 +8,48 @@
 //! 3. A landmark goes to the weighted mean of its places in the regions it belongs to; the region
 //!    whose core it is counts most, for there it was seen from all sides.
 //!
+//! 4. Regions whose sides are sure among themselves make a branch; what joins two branches is a hinge
+//!    ([`branches`]).
+//!
 //! Scales stay as they are: all local maps measure in the same unit.
 
+mod branches;
 mod seams;
 
 use covimap_embed::{Point, RelativeFrame, Similarity, SynchroniseOptions, synchronise};
 
-use crate::{LinkGraph, LocalMap, MapError, RegionCover};
+use crate::{LinkGraph, LocalMap, MapError, RegionCover, SeamsReport};
 use seams::Seam;
+pub(crate) use seams::flatness;
 
 /// Weight of a landmark's place in the region whose core it is, relative to other regions.
 const CORE_WEIGHT: f64 = 4.0;
 /// Misfit, in map units, below which seams are not told apart in weight.
 const LEAST_MISFIT: f64 = 0.03;
 
-/// Positions of all landmarks of a connected graph from the maps of its regions.
+/// The maps of all regions in one frame.
+pub(crate) struct Stitched {
+    /// Positions of all landmarks.
+    pub points: Vec<Point>,
+    /// Branch of each region; branch 0 has most landmarks.
+    pub branch_of: Vec<u32>,
+    /// Dropped seams and hinges.
+    pub seams: SeamsReport,
+}
+
+/// Puts the maps of the regions of a connected graph together.
 pub(crate) fn stitch(
     graph: &LinkGraph,
     cover: &RegionCover,
     maps: &[LocalMap],
-) -> Result<Vec<Point>, MapError> {
-    let edges: Vec<RelativeFrame> = seams::find(graph, cover, maps).iter().map(relative_frame).collect();
+) -> Result<Stitched, MapError> {
+    let seams = seams::find(graph, cover, maps);
+    let edges: Vec<RelativeFrame> = seams.iter().map(relative_frame).collect();
     let options = SynchroniseOptions { scale_pull: f64::INFINITY };
-    let frames = synchronise(maps.len(), &edges, options)?.global_from_node;
-    Ok(blend(graph.landmarks(), cover, maps, &frames))
+    let synchronised = synchronise(maps.len(), &edges, options)?;
+    let points = blend(graph.landmarks(), cover, maps, &synchronised.global_from_node);
+    let (branch_of, seams) = branches::find(cover, &seams, &synchronised.edges);
+    Ok(Stitched { points, branch_of, seams })
 }
 
 fn relative_frame(seam: &Seam) -> RelativeFrame {

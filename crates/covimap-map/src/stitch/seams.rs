@@ -12,7 +12,7 @@
 //! `E` the mean squared misfit over the `m` shared landmarks and cross links, `s0` the least error
 //! that local maps are believed to have.
 
-use covimap_embed::{Correspondence, ProcrustesOptions, Reflection, Similarity, procrustes};
+use covimap_embed::{Correspondence, Point, ProcrustesOptions, Reflection, Similarity, procrustes};
 use rayon::prelude::*;
 
 use crate::{LinkGraph, LocalMap, RegionCover};
@@ -35,6 +35,8 @@ pub(crate) struct Seam {
     pub evidence: f64,
     /// Landmarks in both regions.
     pub shared: usize,
+    /// Least over greatest spread of the shared landmarks: 0 on a line.
+    pub condition: f64,
 }
 
 /// Place of a landmark in a region: `(region, index into its members)`.
@@ -113,7 +115,23 @@ fn seam(
         misfit: squares.map(f64::sqrt),
         evidence: count / 2.0 * ((squares[1] + floor).ln() - (squares[0] + floor).ln()),
         shared: shared.len(),
+        condition: flatness(pairs.iter().map(|pair| pair.target)),
     })
+}
+
+/// Least over greatest standard deviation of points along any direction, in `[0, 1]`; 0 for points on a line.
+pub(crate) fn flatness(points: impl Iterator<Item = Point> + Clone) -> f64 {
+    let count = points.clone().count() as f64;
+    let mean = [0, 1].map(|axis| points.clone().map(|point| point[axis]).sum::<f64>() / count);
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    for [x, y] in points.map(|point| [point[0] - mean[0], point[1] - mean[1]]) {
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    // Eigenvalues of the scatter: half the trace, plus and minus the root.
+    let (half, root) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    if half > 0.0 { ((half - root).max(0.0) / (half + root)).sqrt() } else { 0.0 }
 }
 
 /// Summed squared misfit, under either fit, of the links from members of `a` alone to members of

@@ -3,14 +3,23 @@ use crate::SightingLog;
 use crate::fixtures::counts_of;
 
 fn component(landmarks: u64, converged: bool) -> ComponentReport {
-    ComponentReport { landmarks, regions: 1, pairs: 1, stress1: 0.1, iterations: 1, converged }
+    ComponentReport {
+        landmarks,
+        regions: 1,
+        pairs: 1,
+        stress1: 0.1,
+        iterations: 1,
+        converged,
+        ..Default::default()
+    }
 }
 
 /// Kind, count and examples of the warnings about a log.
 fn about(steps: &[&[&str]], components: &[ComponentReport]) -> Vec<(String, u64, Vec<String>)> {
     let log = SightingLog::from_steps(steps.iter().map(|step| step.iter().copied()));
     let counts = counts_of(&log);
-    warnings(&counts, &LinkGraph::from_counts(&counts), components, log.names())
+    let placed = vec![PlacedLandmark::default(); counts.landmarks()];
+    warnings(&counts, &LinkGraph::from_counts(&counts), &placed, components, log.names())
         .into_iter()
         .map(|warning| (warning.kind, warning.count, warning.examples))
         .collect()
