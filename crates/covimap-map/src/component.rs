@@ -4,8 +4,11 @@ use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, 
 use rayon::prelude::*;
 
 use crate::places::{SeenSets, refine};
+use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
-use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, SeamsReport, Stage, local_map, shape};
+use crate::{
+    AutoParams, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport, Stage, local_map,
+};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -30,11 +33,12 @@ pub(crate) fn map_component(
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    let (cover, Stitched { points: start, branch_of, seams }) = stitched(graph, params, observer)?;
+    let (cover, stitched) = stitched(graph, params, observer)?;
 
     begin(observer, Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
     let pairs = graph.to_pairs();
-    let shape = shape::choose(graph, params, observer)?;
+    let shape = Shape::of(graph, &cover, &stitched);
+    let Stitched { points: start, branch_of, seams } = stitched;
     let start = shape.start(&pairs, start)?;
     let polished = polish(&*shape.terms(&pairs)?, &start, params, observer)?;
     observer.finished(Stage::Polish);
@@ -61,32 +65,39 @@ pub(crate) fn map_component(
 }
 
 /// The first map of a connected graph: regions, each solved by itself, in one frame.
-pub(crate) fn stitched(
+///
+/// Regions at a hinge are widened to all landmarks that their cores are linked to, and solved and stitched
+/// once more: what more they share may decide the side.
+fn stitched(
     graph: &LinkGraph,
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<(RegionCover, Stitched), MapError> {
     begin(observer, Stage::Regions, None)?;
-    let cover = RegionCover::new(graph, params.regions);
+    let mut cover = RegionCover::new(graph, params.regions);
     observer.finished(Stage::Regions);
 
     begin(observer, Stage::LocalMaps, Some(cover.regions().len() as u64))?;
-    let maps = cover
-        .regions()
-        .par_iter()
-        .map(|region| {
-            if observer.interrupted() {
-                return Err(MapError::Interrupted);
-            }
-            let map = local_map::solve(graph, region, params.local_stop.rule())?;
-            observer.advanced(1);
-            Ok(map)
-        })
-        .collect::<Result<Vec<_>, MapError>>()?;
+    let solve = |region: &Region| {
+        if observer.interrupted() {
+            return Err(MapError::Interrupted);
+        }
+        let map = local_map::solve(graph, region, params.local_stop.rule())?;
+        observer.advanced(1);
+        Ok(map)
+    };
+    let mut maps = cover.regions().par_iter().map(solve).collect::<Result<Vec<_>, MapError>>()?;
     observer.finished(Stage::LocalMaps);
 
     begin(observer, Stage::Stitch, None)?;
-    let stitched = stitch(graph, &cover, &maps)?;
+    let mut stitched = stitch(graph, &cover, &maps)?;
+    let hinged = cover.widen(graph, &stitched.seams.hinges, params.regions);
+    let widened: Vec<LocalMap> =
+        hinged.par_iter().map(|&region| solve(&cover.regions()[region])).collect::<Result<_, _>>()?;
+    if !hinged.is_empty() {
+        hinged.iter().zip(widened).for_each(|(&region, map)| maps[region] = map);
+        stitched = stitch(graph, &cover, &maps)?;
+    }
     observer.finished(Stage::Stitch);
     Ok((cover, stitched))
 }

@@ -107,12 +107,6 @@ impl LinkGraph {
         Self::from_rows(rows.collect())
     }
 
-    /// The graph without the links that `left_out`, symmetric, names.
-    pub(crate) fn without(&self, left_out: impl Fn(u32, u32) -> bool) -> Self {
-        let row = |i: u32| self.of(i).iter().filter(|link| !left_out(i, link.to)).copied().collect();
-        Self::from_rows((0..self.landmarks() as u32).map(row).collect())
-    }
-
     /// The links as a weighted scaling problem.
     #[must_use]
     pub fn to_pairs(&self) -> PairDistances {

@@ -32,7 +32,12 @@ pub(super) fn add(graph: &LinkGraph, core_of: &[u32], sizes: RegionParams) -> Ve
 }
 
 /// The core, the `chosen` landmarks next to it, and as much of its halo as there is room for.
-fn region_around(graph: &LinkGraph, core: Vec<u32>, chosen: &[u32], sizes: RegionParams) -> Region {
+pub(super) fn region_around(
+    graph: &LinkGraph,
+    core: Vec<u32>,
+    chosen: &[u32],
+    sizes: RegionParams,
+) -> Region {
     let mut outside: Vec<(u32, f64)> = core
         .iter()
         .flat_map(|&landmark| graph.of(landmark))

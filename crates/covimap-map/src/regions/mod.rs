@@ -8,7 +8,7 @@
 mod cores;
 mod halo;
 
-use crate::{LinkGraph, RegionParams};
+use crate::{Hinge, LinkGraph, RegionParams};
 
 /// One region of a cover.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,6 +36,21 @@ impl RegionCover {
         #[cfg(test)]
         cover.check_invariants(graph, sizes);
         cover
+    }
+
+    /// Widens the two regions of every hinge to all landmarks that a link ties to their cores, as far as there
+    /// is room, and returns their numbers, ascending.
+    pub(crate) fn widen(&mut self, graph: &LinkGraph, hinges: &[Hinge], sizes: RegionParams) -> Vec<usize> {
+        let mut hinged: Vec<usize> =
+            hinges.iter().flat_map(|hinge| hinge.seam.regions.map(|region| region as usize)).collect();
+        hinged.sort_unstable();
+        hinged.dedup();
+        let sizes = RegionParams { halo_links: 1, ..sizes };
+        for &number in &hinged {
+            let region = &mut self.regions[number];
+            *region = halo::region_around(graph, std::mem::take(&mut region.core), &[], sizes);
+        }
+        hinged
     }
 
     /// The regions.

@@ -37,8 +37,8 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
-    /// Weight of path lengths against links, 0 where links alone made the map: few links leave its shape
-    /// free, and what is held out of them told that paths help.
+    /// Weight of path lengths against links, 0 where links alone made the map. Where landmarks have few
+    /// links and most sides are guesses, path lengths keep the map open.
     #[serde(default)]
     pub path_pull: f64,
     /// How its regions hang together.

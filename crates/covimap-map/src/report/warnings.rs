@@ -109,8 +109,8 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
         warn(
             "shape_from_paths",
             pulled,
-            "components with so few links that links alone leave their shape free; the lengths of paths along \
-             links were used as well, which makes bends and loops too wide"
+            "components whose links are so few that most sides are guesses; the lengths of paths along links were \
+             used as well, which unfolds the map and makes its bends and loops too wide"
                 .to_owned(),
         ),
         warn(

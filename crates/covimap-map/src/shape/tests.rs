@@ -1,16 +1,15 @@
 use super::*;
-use crate::Link;
 use crate::fixtures::{distance, exact_links, links_where, scattered};
+use crate::{Link, SeamsReport};
 
-fn chosen(graph: &LinkGraph) -> Shape {
-    choose(graph, &AutoParams::default(), &Silent).unwrap()
-}
-
-/// Places on a straight strip, in order.
-fn strip(n: usize) -> Vec<Point> {
-    let mut points = scattered(n, [n as f64 / 8.0, 0.5], 3);
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points
+/// The shape of a graph whose landmarks are in two regions of two branches, `first` of them in the larger.
+fn shape(graph: &LinkGraph, first: usize) -> Shape {
+    let n = graph.landmarks() as u32;
+    let members: Vec<u32> = (0..n).collect();
+    let (a, b) = members.split_at(first);
+    let cover = RegionCover::of_members(n as usize, &[a, b]);
+    let stitched = Stitched { points: Vec::new(), branch_of: vec![0, 1], seams: SeamsReport::default() };
+    Shape::of(graph, &cover, &stitched)
 }
 
 #[test]
@@ -22,47 +21,45 @@ fn terms_computed_by_hand() {
     };
     let rows = vec![row(&[(1, 1.0, 1.0)]), row(&[(0, 1.0, 1.0), (2, 2.0, 3.0)]), row(&[(1, 2.0, 3.0)])];
     let links = LinkGraph::from_rows(rows).to_pairs();
-    let shape = Shape { from_paths: false, pull: 0.1 };
-    let terms = shape.terms(&links).unwrap();
+    let terms = Shape { pull: 0.1 }.terms(&links).unwrap();
     let [first, path, last] = terms.pairs() else { panic!("{terms:?}") };
     assert_eq!([first, last], [&links.pairs()[0], &links.pairs()[1]]);
     assert_eq!((path.i, path.j, path.distance), (0, 2, 3.0));
     assert!((path.weight - 1.3 / 9.0).abs() < 1e-15, "{path:?}");
-    assert_eq!(*Shape::PLAIN.terms(&links).unwrap(), links);
+    assert_eq!(*Shape { pull: 0.0 }.terms(&links).unwrap(), links);
 }
 
 #[test]
-fn well_linked_maps_and_complete_ones_stay_plain() {
-    let dense = exact_links(&scattered(200, [4.0, 4.0], 1), 1.2);
-    assert!(dense.link_count() >= ENOUGH_LINKS * 200, "{}", dense.link_count());
-    assert_eq!(chosen(&dense), Shape::PLAIN);
-    assert_eq!(chosen(&exact_links(&scattered(12, [1.0, 1.0], 1), 9.0)), Shape::PLAIN);
-    assert_eq!(chosen(&exact_links(&[[0.0; 2], [1.0, 0.0], [2.0, 0.0]], 1.5)), Shape::PLAIN);
+fn paths_pull_where_links_are_few_and_most_sides_are_guesses() {
+    let sparse = exact_links(&scattered(120, [4.0, 4.0], 2), 1.0);
+    let dense = exact_links(&scattered(120, [2.0, 2.0], 2), 1.0);
+    assert!(sparse.link_count() < 1200 && dense.link_count() >= 1200);
+    assert_eq!(shape(&sparse, 59).pull, 1.0);
+    // Half of the landmarks in one branch are enough, and so are ten links a landmark.
+    assert_eq!(shape(&sparse, 60).pull, 0.0);
+    assert_eq!(shape(&dense, 59).pull, 0.0);
 }
 
 #[test]
-fn exact_links_that_fix_the_shape_need_no_paths() {
-    let graph = exact_links(&scattered(120, [4.0, 4.0], 2), 1.0);
-    assert!(graph.link_count() < ENOUGH_LINKS * 120 && graph.components().len() == 1);
-    assert_eq!(chosen(&graph), Shape::PLAIN);
+fn a_map_that_is_sure_begins_where_it_was_stitched() {
+    let truth = scattered(30, [2.0, 2.0], 1);
+    let links = exact_links(&truth, 1.0).to_pairs();
+    assert_eq!(Shape { pull: 0.0 }.start(&links, truth.clone()).unwrap(), truth);
 }
 
 #[test]
-fn few_noisy_links_along_a_strip_are_pulled_straight() {
-    let truth = strip(60);
-    // Each landmark is linked to the next four; lengths are off by up to 60 %, the same for every run.
-    let graph = links_where(60, |i, j| {
-        let noise = (mixed((i as u32, j as u32)) % 1000) as f64 / 1000.0;
-        (j - i <= 4).then(|| distance(truth[i], truth[j]).max(0.1) * (0.4 + 1.2 * noise))
-    });
-    assert!(chosen(&graph).pull > 0.0, "{:?}", chosen(&graph));
-}
-
-#[test]
-fn the_spanning_tree_spans() {
-    let graph = exact_links(&scattered(80, [3.0, 3.0], 5), 1.0);
-    let tree = spanning_tree(&graph);
-    assert_eq!(tree.len(), 79);
-    let kept = graph.without(|i, j| tree.binary_search(&(i.min(j), i.max(j))).is_err());
-    assert_eq!((kept.link_count(), kept.components().len()), (79, 1));
+fn few_noisy_links_along_a_strip_are_laid_out_in_their_order() {
+    let mut truth = scattered(60, [60.0 / 8.0, 0.5], 3);
+    truth.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    // Each landmark is linked to the next four; the lengths are off by up to a half.
+    let noise = |i: usize, j: usize| 0.5 + ((i * 7919 + j * 104_729) % 1000) as f64 / 1000.0;
+    let links =
+        links_where(60, |i, j| (j - i <= 4).then(|| distance(truth[i], truth[j]).max(0.1) * noise(i, j)))
+            .to_pairs();
+    let start = Shape { pull: 1.0 }.start(&links, Vec::new()).unwrap();
+    // Landmarks ten places apart in the strip never change places in the map.
+    let along = |i: usize| (start[i][0] - start[0][0]).hypot(start[i][1] - start[0][1]);
+    for i in 10..50 {
+        assert!(along(i) < along(i + 10), "{i} {} {}", along(i), along(i + 10));
+    }
 }
