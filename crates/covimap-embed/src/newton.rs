@@ -188,9 +188,10 @@ fn descend(
             let gradient = half_gradient(pairs, &points);
             return Some((Configuration { points, stress, gradient }, step));
         }
-        // The lowest point of the parabola through what is known; a NaN shortens as far as allowed.
+        // The lowest point of the parabola through what is known.
         let lowest = -slope * length * length / (2.0 * (stress - here.stress - slope * length));
-        length *= (lowest / length).max(0.1).min(0.5);
+        let share = lowest / length;
+        length *= if share.is_nan() { 0.1 } else { share.clamp(0.1, 0.5) };
     }
     None
 }
