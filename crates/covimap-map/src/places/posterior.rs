@@ -190,7 +190,7 @@ fn largest(places: &Cells) -> f32 {
 fn normalise(places: &mut Cells) -> Range<usize> {
     let floor = NEGLIGIBLE * largest(places);
     let mut total = 0.0;
-    let mut rows = CELLS..0;
+    let (mut first, mut end) = (CELLS, 0);
     for (row, places) in places.iter_mut().enumerate() {
         let mut sum = 0.0;
         for place in places {
@@ -200,12 +200,13 @@ fn normalise(places: &mut Cells) -> Range<usize> {
             sum += *place;
         }
         if sum > 0.0 {
-            rows = rows.start.min(row)..row + 1;
+            first = first.min(row);
+            end = row + 1;
         }
         total += sum;
     }
     for place in places.as_flattened_mut() {
         *place /= total;
     }
-    rows
+    first..end
 }
