@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::SeamReport;
 use crate::fixtures::{cases, exact_links, links_where, scattered};
 
 impl RegionCover {
@@ -188,4 +189,26 @@ fn parts_that_one_landmark_or_one_link_joins_share_two_landmarks() {
     // Without a door nothing is to be done for it.
     let open = exact_links(&scattered(400, [4.0, 10.0], 9), 1.1);
     assert!(hangs_together(&RegionCover::new(&open, RegionParams::default())));
+}
+
+#[test]
+fn regions_at_a_hinge_take_in_all_that_is_linked_to_their_cores() {
+    let graph = exact_links(&scattered(400, [6.0, 8.0], 4), 1.0);
+    let sizes = RegionParams::default();
+    let mut cover = RegionCover::new(&graph, sizes);
+    let before = cover.clone();
+    let seam =
+        SeamReport { regions: [2, 5], shared: 3, residual: 0.1, condition: 0.1, evidence: 2.0, trust: 1.0 };
+    assert_eq!(cover.widen(&graph, &[Hinge { seam, landmarks: 9 }], sizes), [2, 5]);
+    cover.check_invariants(&graph, sizes);
+    for (number, (region, old)) in cover.regions().iter().zip(before.regions()).enumerate() {
+        if [2, 5].contains(&number) {
+            let linked = |landmark: u32| links(&graph, landmark, &region.core) > 0;
+            let wanted = (0..400).filter(|&i| linked(i) || region.core.binary_search(&i).is_ok());
+            assert_eq!(region.members, wanted.collect::<Vec<_>>());
+            assert!(region.members.len() > old.members.len());
+        } else {
+            assert_eq!(region, old);
+        }
+    }
 }

@@ -1,10 +1,13 @@
 //! Findings in counts and graph that a reader of the map should know of.
 
-use super::{ComponentReport, Hinge, Warning};
+use super::{ComponentReport, Hinge, SeamsReport, Warning};
 use crate::{CoVisibility, LandmarkId, LandmarkNames, LinkGraph, PlacedLandmark};
 
 /// IDs named in a warning; the rest is only counted.
 const EXAMPLES: usize = 10;
+
+/// Share of dropped seams from which on a reader is told.
+const CONTESTED: f64 = 0.25;
 
 /// All warnings of a build, in a fixed order.
 pub(crate) fn warnings(
@@ -87,7 +90,9 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
     let several = components.len() > 1;
     let unfinished = components.iter().filter(|component| !component.converged).count();
     let hinges = || components.iter().flat_map(|component| &component.seams.hinges);
-    let dropped = components.iter().map(|component| component.seams.dropped.len()).sum();
+    let contested = |seams: &&SeamsReport| seams.dropped.len() as f64 > CONTESTED * seams.count as f64;
+    let dropped =
+        components.iter().map(|component| &component.seams).filter(contested).map(|s| s.dropped.len()).sum();
     let pulled = components.iter().filter(|component| component.path_pull > 0.0).count();
     let tiny = components.len() == 1 && components[0].landmarks <= 3;
     [

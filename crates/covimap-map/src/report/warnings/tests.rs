@@ -1,6 +1,6 @@
 use super::*;
-use crate::SightingLog;
 use crate::fixtures::counts_of;
+use crate::{SeamReport, SightingLog};
 
 fn component(landmarks: u64, converged: bool) -> ComponentReport {
     ComponentReport {
@@ -97,4 +97,57 @@ fn ten_examples_are_named_and_the_rest_counted() {
     let found = about(&[&steps[..], &SOUND].concat(), &[component(5, true)]);
     let named: Vec<&str> = ids[..10].iter().map(String::as_str).collect();
     assert_eq!(found, [warning("never_together", 25, &named)]);
+}
+
+fn seam(regions: [u32; 2]) -> SeamReport {
+    SeamReport { regions, shared: 2, residual: 0.1, condition: 0.0, evidence: 1.5, trust: 1.0 }
+}
+
+#[test]
+fn hinges_and_the_first_of_them_in_words() {
+    let log = SightingLog::from_steps(SOUND);
+    let counts = counts_of(&log);
+    let mut hanging = component(9, true);
+    hanging.seams.hinges =
+        vec![Hinge { seam: seam([16, 17]), landmarks: 40 }, Hinge { seam: seam([3, 4]), landmarks: 5 }];
+    let placed = vec![PlacedLandmark::default(); counts.landmarks()];
+    let found = warnings(
+        &counts,
+        &LinkGraph::from_counts(&counts),
+        &placed,
+        &[hanging, component(3, true)],
+        log.names(),
+    );
+    let hinges = found.iter().find(|warning| warning.kind == "hinges").unwrap();
+    assert_eq!(hinges.count, 2);
+    let words = "a part of 40 landmarks hangs on 2 that regions 16 and 17 share";
+    assert!(hinges.message.contains(words), "{}", hinges.message);
+}
+
+#[test]
+fn seams_that_are_dropped_in_numbers() {
+    let mut contested = component(9, true);
+    contested.seams = SeamsReport { count: 7, dropped: vec![seam([0, 1]), seam([1, 2])], hinges: Vec::new() };
+    assert_eq!(about(&SOUND, std::slice::from_ref(&contested)), [warning("dropped_seams", 2, &[])]);
+    // Two of eight are a quarter and no more.
+    contested.seams.count = 8;
+    assert_eq!(about(&SOUND, &[contested]), []);
+}
+
+#[test]
+fn components_that_paths_keep_open() {
+    let pulled = ComponentReport { path_pull: 1.0, ..component(9, true) };
+    assert_eq!(about(&SOUND, &[pulled]), [warning("shape_from_paths", 1, &[])]);
+}
+
+#[test]
+fn landmarks_whose_partners_lie_on_a_line() {
+    let log = SightingLog::from_steps(SOUND);
+    let counts = counts_of(&log);
+    let mut placed = vec![PlacedLandmark::default(); counts.landmarks()];
+    placed[3].loose = true;
+    let found =
+        warnings(&counts, &LinkGraph::from_counts(&counts), &placed, &[component(5, true)], log.names());
+    let kinds: Vec<_> = found.iter().map(|w| (w.kind.as_str(), w.examples.clone())).collect();
+    assert_eq!(kinds, [("partners_on_a_line", vec!["D".to_owned()])]);
 }

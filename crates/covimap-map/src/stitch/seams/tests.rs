@@ -69,3 +69,17 @@ fn shared_landmarks_in_one_place_fix_no_turn() {
     let (graph, cover, maps) = pair(&truth, [&[0, 1, 2], &[0, 1, 3]], |i, _| i == 0, false);
     assert!(find(&graph, &cover, &maps).is_empty());
 }
+
+#[test]
+fn flatness_computed_by_hand() {
+    // A rectangle of 4 by 3 has spreads of 2 and 1.5, whichever way it lies.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
+    let turned = corners.map(|[x, y]| [cos * x - sin * y + 7.0, sin * x + cos * y]);
+    assert!((flatness(turned.into_iter()) - 0.75).abs() < 1e-12);
+    let line = [[0.0, 1.0], [1.0, 2.0], [5.0, 6.0]];
+    assert!(flatness(line.into_iter()) < 1e-7, "{}", flatness(line.into_iter()));
+    assert_eq!(flatness([[2.0, 3.0]; 4].into_iter()), 0.0);
+    assert_eq!(flatness([[2.0, 3.0]].into_iter()), 0.0);
+    assert_eq!(flatness(std::iter::empty::<Point>()), 0.0);
+}
