@@ -10,6 +10,7 @@ pub mod export;
 #[cfg(test)]
 mod fixtures;
 mod global_map;
+mod honesty;
 mod landmarks;
 mod links;
 mod local_map;
@@ -30,6 +31,7 @@ pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
 pub use error::MapError;
 pub use global_map::{GlobalMap, PlacedLandmark};
+pub use honesty::{HonestLinks, HonestyReport};
 pub use landmarks::{LandmarkId, LandmarkNames};
 pub use links::{Link, LinkGraph};
 pub use local_map::LocalMap;

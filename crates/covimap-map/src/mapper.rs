@@ -7,8 +7,8 @@ use crate::component::{ComponentMap, map_component, put_in_frame};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
-    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
-    MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
+    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
+    LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
 };
 
 /// Builds maps with one set of checked parameters.
@@ -37,7 +37,10 @@ impl Mapper {
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
         let counts = CoVisibility::count(log, observer)?;
         check_information(&counts)?;
-        let graph = LinkGraph::from_counts(&counts);
+        let (graph, honesty) = match self.params.method {
+            Method::Auto => honest_links(&counts),
+            Method::Classical => (LinkGraph::from_counts(&counts), HonestyReport::default()),
+        };
         let components = graph.components();
         let maps: Vec<ComponentMap> = match self.params.method {
             Method::Auto => self.auto_components(log, &graph, &components, observer)?,
@@ -48,7 +51,7 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
-        let report = report(&counts, &graph, &components, &maps, log);
+        let report = report(&counts, &graph, honesty, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
         GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
     }
@@ -89,6 +92,11 @@ fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
         return Err(MapError::NoInformation { landmarks: n, steps: counts.sightings()[0] });
     }
     Ok(())
+}
+
+fn honest_links(counts: &CoVisibility) -> (LinkGraph, HonestyReport) {
+    let honest = HonestLinks::judge(counts);
+    (LinkGraph::from_honest(counts, &honest), honest.report())
 }
 
 fn classical_component(
@@ -157,6 +165,7 @@ fn place(
 fn report(
     counts: &CoVisibility,
     graph: &LinkGraph,
+    honesty: HonestyReport,
     components: &[Vec<u32>],
     maps: &[ComponentMap],
     log: &SightingLog,
@@ -182,7 +191,8 @@ fn report(
         pairs,
         regions: components.iter().map(|component| component.regions).sum(),
         stress1: (squares / pairs.max(1) as f64).sqrt(),
-        warnings: warnings(counts, graph, &components, log.names()),
+        honesty,
+        warnings: warnings(counts, graph, honesty, &components, log.names()),
         components,
     }
 }

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use warnings::warnings;
 
+use crate::HonestyReport;
+
 /// A finding that a reader of the map should know of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Warning {
@@ -27,7 +29,7 @@ pub struct ComponentReport {
     pub landmarks: u64,
     /// Number of regions.
     pub regions: u64,
-    /// Number of co-seen pairs.
+    /// Number of linked pairs.
     pub pairs: u64,
     /// Kruskal's stress-1 of the final positions over those pairs; 0 is perfect.
     pub stress1: f64,
@@ -46,8 +48,11 @@ pub struct BuildReport {
     pub sightings: u64,
     /// Landmarks seen at least once.
     pub landmarks: u64,
-    /// Pairs seen together at least once.
+    /// Pairs that are linked: seen together, and not set aside.
     pub pairs: u64,
+    /// What the log says of recognition errors.
+    #[serde(default)]
+    pub honesty: HonestyReport,
     /// Regions over all components.
     pub regions: u64,
     /// Stress-1 over all components.

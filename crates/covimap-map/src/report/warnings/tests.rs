@@ -10,7 +10,7 @@ fn component(landmarks: u64, converged: bool) -> ComponentReport {
 fn about(steps: &[&[&str]], components: &[ComponentReport]) -> Vec<(String, u64, Vec<String>)> {
     let log = SightingLog::from_steps(steps.iter().map(|step| step.iter().copied()));
     let counts = counts_of(&log);
-    warnings(&counts, &LinkGraph::from_counts(&counts), components, log.names())
+    warnings(&counts, &LinkGraph::from_counts(&counts), HonestyReport::default(), components, log.names())
         .into_iter()
         .map(|warning| (warning.kind, warning.count, warning.examples))
         .collect()

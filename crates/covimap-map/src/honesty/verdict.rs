@@ -1,0 +1,180 @@
+//! Which links are kept.
+//!
+//! A link of the [`Backbone`] is. Of the others, what speaks for a link is how unlikely its
+//! count is by chance, `p_ij = P(X >= n_ij)` for a Poisson variable X of mean
+//!
+//! `lambda_ij = (n_i f_j + n_j f_i) / T`,  (2)
+//!
+//! and how many backbone partners the two landmarks share, `c_ij`: the support. Chance links come from anywhere, so
+//! that most join landmarks without a common partner; true ones seldom do. Links are therefore judged
+//! apart for each `c`. Among the `A_c` pairs with that support, linked or not, chance makes about
+//! `A_c p` links whose count is as unlikely as p. The cut is the largest p at which those are at most
+//! one in a hundred of the links there are (Benjamini and Hochberg, 1995).
+//!
+//! `f_i` is the number of false sightings of landmark i: the mean over all landmarks, or what its own
+//! unsupported links show if that is more beyond doubt. Some IDs are what anything is misread for.
+
+use rayon::prelude::*;
+
+use super::backbone::Backbone;
+use super::poisson::ln_tail;
+use crate::{CoVisibility, LandmarkId};
+
+/// Share of chance links allowed among the links kept, for every support.
+const FALSE_SHARE: f64 = 0.01;
+/// Supports told apart: 0, 1, ..., and this or more.
+const MOST_SUPPORT: usize = 7;
+/// Stands for the support of a link of the backbone.
+const BACKBONE: u8 = u8::MAX;
+/// Buckets of `-ln p`, and their number a unit.
+const BUCKETS: usize = 512;
+const PER_UNIT: f64 = 4.0;
+/// Landmarks whose pairs are counted by support, evenly spread.
+const SAMPLE: usize = 2048;
+
+/// For every landmark, which links of its row are kept.
+pub(super) type Kept = Vec<Box<[bool]>>;
+
+/// Judges all links; `x` is the error rate of [`super::error_rate`], `> 0`.
+///
+/// `O(m k)` for `m` links and steps of `k` landmarks, in parallel by rows; a byte for each end of a
+/// link.
+pub(super) fn judge(counts: &CoVisibility, backbone: &Backbone, x: f64) -> Kept {
+    let supports = supports(counts, backbone);
+    let judge = Judge { counts, false_sightings: false_sightings(counts, &supports, x) };
+    let cuts = judge.cuts(&supports, pairs_by_support(backbone, counts.landmarks()));
+    let kept = |(i, supports): (usize, &Box<[u8]>)| {
+        let buckets = judge.buckets(i as u32);
+        let kept = |(&support, bucket): (&u8, usize)| support == BACKBONE || bucket >= cuts[support as usize];
+        supports.iter().zip(buckets).map(kept).collect()
+    };
+    supports.par_iter().enumerate().map(kept).collect()
+}
+
+/// Support of every link, by rows.
+fn supports(counts: &CoVisibility, backbone: &Backbone) -> Vec<Box<[u8]>> {
+    const PARTNER: u8 = 1;
+    const NEIGHBOUR: u8 = 2;
+    let n = counts.landmarks();
+    let row = |marks: &mut Vec<u8>, i: u32| {
+        backbone.partners.of(i).iter().for_each(|&k| marks[k as usize] |= PARTNER);
+        backbone.neighbours(i).for_each(|k| marks[k as usize] |= NEIGHBOUR);
+        let support = |&j: &u32| {
+            if marks[j as usize] & NEIGHBOUR != 0 {
+                return BACKBONE;
+            }
+            let common = backbone.partners.of(j).iter().filter(|&&k| marks[k as usize] & PARTNER != 0);
+            common.take(MOST_SUPPORT).count() as u8
+        };
+        let supports = counts.row(LandmarkId(i)).0.iter().map(support).collect();
+        backbone.neighbours(i).for_each(|k| marks[k as usize] = 0);
+        supports
+    };
+    (0..n as u32).into_par_iter().map_init(|| vec![0; n], row).collect()
+}
+
+/// `f_i` of every landmark.
+///
+/// The unsupported links of landmark i count `C_i = f_i S / T + n_i F / T` in the mean. Its own rate
+/// counts if it lies two standard deviations above the mean one.
+fn false_sightings(counts: &CoVisibility, supports: &[Box<[u8]>], x: f64) -> Vec<f64> {
+    let steps = counts.steps() as f64;
+    let all: f64 = counts.sightings().iter().map(|&n| f64::from(n)).sum();
+    let mean = x * steps;
+    let of_all = mean * counts.landmarks() as f64;
+    let own = |(i, supports): (usize, &Box<[u8]>)| {
+        let (_, together) = counts.row(LandmarkId(i as u32));
+        let unsupported = supports.iter().zip(together).filter(|(support, _)| **support == 0);
+        let unsupported: u64 = unsupported.map(|(_, &both)| u64::from(both)).sum();
+        let own = (steps * unsupported as f64 - f64::from(counts.sightings()[i]) * of_all) / all;
+        mean.max(own - 2.0 * own.max(0.0).sqrt())
+    };
+    supports.par_iter().enumerate().map(own).collect()
+}
+
+/// `A_c` for `c >= 1`, and all pairs for `c = 0`: nearly all of them have no support.
+fn pairs_by_support(backbone: &Backbone, landmarks: usize) -> [f64; MOST_SUPPORT + 1] {
+    let stride = landmarks.div_ceil(SAMPLE);
+    let rows: Vec<u32> = (0..landmarks as u32).step_by(stride).collect();
+    let count = |(common, touched): &mut (Vec<u32>, Vec<u32>), i: u32| {
+        for &k in backbone.partners.of(i) {
+            for &j in backbone.partner_of.of(k).iter().filter(|&&j| j != i) {
+                if common[j as usize] == 0 {
+                    touched.push(j);
+                }
+                common[j as usize] += 1;
+            }
+        }
+        let mut pairs = [0u64; MOST_SUPPORT + 1];
+        for j in touched.drain(..) {
+            pairs[MOST_SUPPORT.min(std::mem::take(&mut common[j as usize]) as usize)] += 1;
+        }
+        pairs
+    };
+    let sampled = rows.len() as f64;
+    let seen_from_both = rows
+        .into_par_iter()
+        .map_init(|| (vec![0; landmarks], Vec::new()), count)
+        .reduce(Default::default, |a, b| std::array::from_fn(|c| a[c] + b[c]));
+    let n = landmarks as f64;
+    let mut pairs = seen_from_both.map(|pairs| 0.5 * pairs as f64 * n / sampled);
+    pairs[0] = 0.5 * n * (n - 1.0);
+    pairs
+}
+
+struct Judge<'a> {
+    counts: &'a CoVisibility,
+    /// `f_i`.
+    false_sightings: Vec<f64>,
+}
+
+impl Judge<'_> {
+    /// Bucket of `-ln p` of every link of a row.
+    fn buckets(&self, i: u32) -> impl Iterator<Item = usize> {
+        let (partners, together) = self.counts.row(LandmarkId(i));
+        let sightings = self.counts.sightings();
+        let steps = self.counts.steps() as f64;
+        partners.iter().zip(together).map(move |(&j, &both)| {
+            let [i, j] = [i, j].map(|landmark| landmark as usize);
+            let here = f64::from(sightings[i]) * self.false_sightings[j];
+            let there = f64::from(sightings[j]) * self.false_sightings[i];
+            let surprise = -ln_tail(both, (here + there) / steps);
+            ((PER_UNIT * surprise) as usize).min(BUCKETS - 1)
+        })
+    }
+
+    /// The first bucket that is kept, for each support.
+    fn cuts(&self, supports: &[Box<[u8]>], pairs: [f64; MOST_SUPPORT + 1]) -> [usize; MOST_SUPPORT + 1] {
+        type Histogram = Vec<[u64; BUCKETS]>;
+        let none = || vec![[0; BUCKETS]; MOST_SUPPORT + 1];
+        let count = |mut histogram: Histogram, (i, supports): (usize, &Box<[u8]>)| {
+            for (&support, bucket) in supports.iter().zip(self.buckets(i as u32)) {
+                if support != BACKBONE {
+                    histogram[support as usize][bucket] += 1;
+                }
+            }
+            histogram
+        };
+        let add = |mut a: Histogram, b: Histogram| {
+            a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(sum, more)| *sum += more);
+            a
+        };
+        let histogram = supports.par_iter().enumerate().fold(none, count).reduce(none, add);
+        // Every link was counted from both its ends.
+        std::array::from_fn(|c| cut(&histogram[c].map(|links| 0.5 * links as f64), pairs[c]))
+    }
+}
+
+/// The lowest bucket from which on chance makes at most its share of the links.
+fn cut(links: &[f64; BUCKETS], pairs: f64) -> usize {
+    let mut kept = 0.0;
+    let mut cut = BUCKETS - 1;
+    for bucket in (0..BUCKETS).rev() {
+        kept += links[bucket];
+        let p = (-(bucket as f64) / PER_UNIT).exp();
+        if pairs * p <= FALSE_SHARE * kept {
+            cut = bucket;
+        }
+    }
+    cut
+}
