@@ -3,7 +3,7 @@
 use covimap_embed::Point;
 
 use super::Model;
-use super::sensor::{Curve, probability};
+use super::sensor::Curve;
 use crate::LinkGraph;
 
 /// Grid spacing, as a share of the range.
@@ -147,7 +147,7 @@ impl<'a> Posterior<'a> {
         for witness in witnesses {
             let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
             let [visibility, _] = self.curve.at(dx * dx + dy * dy);
-            let seen = probability(witness.detectability, visibility);
+            let seen = self.model.sensor.probability(witness.detectability, visibility);
             product *= if witness.seen { seen } else { 1.0 - seen };
             if product < floor {
                 return 0.0;

@@ -9,7 +9,7 @@
 use covimap_embed::Point;
 
 use super::posterior::Step;
-use super::sensor::{Curve, DETECTABILITY, probability};
+use super::sensor::{Curve, DETECTABILITY, Sensor};
 
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
@@ -39,7 +39,7 @@ impl ScoreBoard {
     }
 
     /// Adds `times` steps with the posterior of their place.
-    pub fn gather(&mut self, step: &Step, times: f64, curve: &Curve) {
+    pub fn gather(&mut self, step: &Step, times: f64, curve: &Curve, sensor: Sensor) {
         for witness in step.witnesses {
             let seen = f64::from(u8::from(witness.seen));
             let p = witness.detectability;
@@ -47,7 +47,7 @@ impl ScoreBoard {
             for &(place, weight) in step.places {
                 let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
                 let [v, slope] = curve.at(dx * dx + dy * dy);
-                let probability = probability(p, v);
+                let probability = sensor.probability(p, v);
                 let information = times * weight / (probability * (1.0 - probability));
                 let surprise = information * (seen - probability);
                 let by_offset = p * slope;

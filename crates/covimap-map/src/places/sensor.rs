@@ -2,8 +2,9 @@
 
 use super::posterior::Step;
 
-/// Probability `e` of a sighting that should not be.
-pub(super) const FALSE_SIGHTING: f64 = 1e-3;
+/// Bounds of the probability `e` of a sighting that should not be. It starts at the lower one: walls
+/// and soft edges let even a faultless log look a little false.
+pub(super) const FALSE_SIGHTING: (f64, f64) = (1e-3, 0.2);
 /// Narrowest edge, as a share of the range: the grid of places resolves no finer.
 const NARROWEST: f64 = 0.03;
 /// Largest relative change of the range in one step.
@@ -12,6 +13,8 @@ const RANGE_STEP: f64 = 0.1;
 const EDGE_STEP: f64 = 0.3;
 /// Largest change of the common detectability in one step.
 const DETECTABILITY_STEP: f64 = 0.2;
+/// Largest change of the probability of a false sighting in one step.
+const FALSE_STEP: f64 = 0.02;
 /// Bounds of a detectability.
 pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
 /// Entries of the table of the visibility curve over squared distance.
@@ -26,6 +29,8 @@ pub(crate) struct Sensor {
     pub edge: f64,
     /// Detectability of a landmark of which nothing else is known.
     pub detectability: f64,
+    /// Probability `e` that a step shows a landmark nearby which cannot be seen from there.
+    pub false_sighting: f64,
 }
 
 impl Sensor {
@@ -33,11 +38,11 @@ impl Sensor {
     fn visibility(self, distance: f64) -> f64 {
         1.0 / (1.0 + ((distance - self.range) / self.edge).exp())
     }
-}
 
-/// Eq. (1): probability of seeing a landmark of this detectability where the curve is `visibility`.
-pub(super) fn probability(detectability: f64, visibility: f64) -> f64 {
-    FALSE_SIGHTING + (detectability - FALSE_SIGHTING) * visibility
+    /// Eq. (1): probability of seeing a landmark of this detectability where the curve is `visibility`.
+    pub(super) fn probability(self, detectability: f64, visibility: f64) -> f64 {
+        self.false_sighting + (detectability - self.false_sighting) * visibility
+    }
 }
 
 /// The visibility curve over squared distance: roots and exponentials are paid for once.
@@ -67,16 +72,17 @@ impl Curve {
     }
 }
 
-/// Score and information of the range, of the logarithm of the edge and of a change of all
-/// detectabilities.
+/// Score and information of the range, of the logarithm of the edge, of a change of all
+/// detectabilities and of the probability of a false sighting.
 ///
-/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
-/// `p`.
+/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, `v` by `p`
+/// and `1 - v` by `e`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SensorScores {
     range: [f64; 2],
     log_edge: [f64; 2],
     detectability: [f64; 2],
+    false_sighting: [f64; 2],
 }
 
 impl SensorScores {
@@ -86,7 +92,7 @@ impl SensorScores {
             for &(place, weight) in step.places {
                 let distance = (witness.at[0] - place[0]).hypot(witness.at[1] - place[1]);
                 let v = sensor.visibility(distance);
-                let p = probability(witness.detectability, v);
+                let p = sensor.probability(witness.detectability, v);
                 let information = times * weight / (p * (1.0 - p));
                 let surprise = information * (f64::from(u8::from(witness.seen)) - p);
                 let by_range = witness.detectability * v * (1.0 - v) / sensor.edge;
@@ -97,6 +103,8 @@ impl SensorScores {
                 self.log_edge[1] += information * by_edge * by_edge;
                 self.detectability[0] += surprise * v;
                 self.detectability[1] += information * v * v;
+                self.false_sighting[0] += surprise * (1.0 - v);
+                self.false_sighting[1] += information * (1.0 - v) * (1.0 - v);
             }
         }
     }
@@ -110,10 +118,12 @@ impl SensorScores {
         let range = sensor.range + moved;
         let edge = sensor.edge * step(self.log_edge, EDGE_STEP).exp();
         let detectability = sensor.detectability + step(self.detectability, DETECTABILITY_STEP);
+        let false_sighting = sensor.false_sighting + step(self.false_sighting, FALSE_STEP);
         Sensor {
             range,
             edge: edge.max(NARROWEST * range),
             detectability: detectability.clamp(DETECTABILITY.0, DETECTABILITY.1),
+            false_sighting: false_sighting.clamp(FALSE_SIGHTING.0, FALSE_SIGHTING.1),
         }
     }
 }
