@@ -18,10 +18,17 @@ pub fn of(report: &BuildReport) -> String {
         counted(report.landmarks, "landmark"),
         counted(report.components.len() as u64, "component"),
         counted(report.regions, "region"),
-        counted(report.pairs, "pair"),
+        counted(report.pairs + report.honesty.set_aside, "pair"),
         counted(report.steps, "step"),
     );
     add(&mut text, format_args!("stress-1 {:.4} ({})", report.stress1, kruskal(report.stress1)));
+    if let Some(rate) = report.honesty.misrecognition {
+        let aside = counted(report.honesty.set_aside, "pair");
+        add(
+            &mut text,
+            format_args!("about {:.2} % of the sightings misread, {aside} set aside", 100.0 * rate),
+        );
+    }
     for warning in &report.warnings {
         add(&mut text, self::warning(warning));
     }
@@ -84,6 +91,8 @@ fn add(text: &mut String, line: impl std::fmt::Display) {
 
 #[cfg(test)]
 mod tests {
+    use covimap_map::HonestyReport;
+
     use super::*;
 
     #[test]
@@ -103,6 +112,7 @@ mod tests {
             sightings: 99,
             landmarks: 25,
             pairs: 1,
+            honesty: HonestyReport { set_aside: 7, misrecognition: Some(0.0123) },
             regions: 2,
             stress1: 0.031,
             components: Vec::new(),
@@ -115,8 +125,9 @@ mod tests {
         };
         assert_eq!(
             of(&report),
-            "25 landmarks in 0 components and 2 regions, 1 pair seen together, from 40 steps\n\
+            "25 landmarks in 0 components and 2 regions, 8 pairs seen together, from 40 steps\n\
              stress-1 0.0310 (good)\n\
+             about 1.23 % of the sightings misread, 7 pairs set aside\n\
              warning: seen_once (20): seen in a single step; log them more often\n  \
              L1, L2, L3, L4, L5, L6, L7, L8, L9, L10, ..."
         );

@@ -178,3 +178,6 @@ impl Walk {
         shells
     }
 }
+
+#[cfg(test)]
+mod tests;

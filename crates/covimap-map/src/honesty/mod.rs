@@ -82,3 +82,6 @@ impl HonestLinks {
         self.report
     }
 }
+
+#[cfg(test)]
+mod tests;

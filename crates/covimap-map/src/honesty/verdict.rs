@@ -5,11 +5,12 @@
 //!
 //! `lambda_ij = (n_i f_j + n_j f_i) / T`,  (2)
 //!
-//! and how many backbone partners the two landmarks share, `c_ij`: the support. Chance links come from anywhere, so
-//! that most join landmarks without a common partner; true ones seldom do. Links are therefore judged
-//! apart for each `c`. Among the `A_c` pairs with that support, linked or not, chance makes about
+//! and how many backbone partners the two landmarks share: the support. It is *distant* if they share
+//! none, but a partner of one is a neighbour of a partner of the other. Chance links come from
+//! anywhere, so that most of them have no support; true ones seldom do without. Links are therefore judged
+//! apart for each support c. Among the `A_c` pairs with that support, linked or not, chance makes about
 //! `A_c p` links whose count is as unlikely as p. The cut is the largest p at which those are at most
-//! one in a hundred of the links there are (Benjamini and Hochberg, 1995).
+//! a given share of the links there are (Benjamini and Hochberg, 1995).
 //!
 //! `f_i` is the number of false sightings of landmark i: the mean over all landmarks, or what its own
 //! unsupported links show if that is more beyond doubt. Some IDs are what anything is misread for.
@@ -20,10 +21,13 @@ use super::backbone::Backbone;
 use super::poisson::ln_tail;
 use crate::{CoVisibility, LandmarkId};
 
-/// Share of chance links allowed among the links kept, for every support.
-const FALSE_SHARE: f64 = 0.01;
-/// Supports told apart: 0, 1, ..., and this or more.
-const MOST_SUPPORT: usize = 7;
+/// Share of chance links allowed among those kept: without support, with a distant one, and with common
+/// partners. The nearer its ends are to each other, the less harm a false link does, and
+/// the more is lost with a true one.
+const FALSE_SHARES: [f64; 3] = [0.01, 0.1, 0.3];
+/// Supports told apart: none, distant, 1, 2, ... common partners, and this less 1 or more.
+const MOST_SUPPORT: usize = 8;
+const SUPPORTS: usize = MOST_SUPPORT + 1;
 /// Stands for the support of a link of the backbone.
 const BACKBONE: u8 = u8::MAX;
 /// Buckets of `-ln p`, and their number a unit.
@@ -51,26 +55,67 @@ pub(super) fn judge(counts: &CoVisibility, backbone: &Backbone, x: f64) -> Kept 
     supports.par_iter().enumerate().map(kept).collect()
 }
 
+/// Landmarks around one landmark of the backbone.
+struct Around {
+    /// Bits of every landmark; zero between landmarks.
+    marks: Vec<u8>,
+    marked: Vec<u32>,
+}
+
+/// A partner.
+const PARTNER: u8 = 1;
+/// A neighbour: a partner, or one whose partner it is.
+const NEIGHBOUR: u8 = 2;
+/// A neighbour of a partner.
+const SECOND: u8 = 4;
+
+impl Around {
+    fn new(landmarks: usize) -> Self {
+        Self { marks: vec![0; landmarks], marked: Vec::new() }
+    }
+
+    fn mark(&mut self, landmark: u32, bit: u8) {
+        let marks = &mut self.marks[landmark as usize];
+        if *marks == 0 {
+            self.marked.push(landmark);
+        }
+        *marks |= bit;
+    }
+
+    fn centre_on(&mut self, backbone: &Backbone, i: u32) {
+        for landmark in self.marked.drain(..) {
+            self.marks[landmark as usize] = 0;
+        }
+        for &k in backbone.partners.of(i) {
+            self.mark(k, PARTNER);
+            backbone.neighbours(k).for_each(|second| self.mark(second, SECOND));
+        }
+        backbone.neighbours(i).for_each(|k| self.mark(k, NEIGHBOUR));
+    }
+
+    /// Support of a link of the centre with landmark j.
+    fn support(&self, backbone: &Backbone, j: u32) -> u8 {
+        if self.marks[j as usize] & NEIGHBOUR != 0 {
+            return BACKBONE;
+        }
+        let (mut common, mut distant) = (0, 0);
+        for &k in backbone.partners.of(j) {
+            let marks = self.marks[k as usize];
+            common += usize::from(marks & PARTNER != 0);
+            distant |= usize::from(marks & SECOND != 0);
+        }
+        if common > 0 { MOST_SUPPORT.min(common + 1) as u8 } else { distant as u8 }
+    }
+}
+
 /// Support of every link, by rows.
 fn supports(counts: &CoVisibility, backbone: &Backbone) -> Vec<Box<[u8]>> {
-    const PARTNER: u8 = 1;
-    const NEIGHBOUR: u8 = 2;
     let n = counts.landmarks();
-    let row = |marks: &mut Vec<u8>, i: u32| {
-        backbone.partners.of(i).iter().for_each(|&k| marks[k as usize] |= PARTNER);
-        backbone.neighbours(i).for_each(|k| marks[k as usize] |= NEIGHBOUR);
-        let support = |&j: &u32| {
-            if marks[j as usize] & NEIGHBOUR != 0 {
-                return BACKBONE;
-            }
-            let common = backbone.partners.of(j).iter().filter(|&&k| marks[k as usize] & PARTNER != 0);
-            common.take(MOST_SUPPORT).count() as u8
-        };
-        let supports = counts.row(LandmarkId(i)).0.iter().map(support).collect();
-        backbone.neighbours(i).for_each(|k| marks[k as usize] = 0);
-        supports
+    let row = |around: &mut Around, i: u32| {
+        around.centre_on(backbone, i);
+        counts.row(LandmarkId(i)).0.iter().map(|&j| around.support(backbone, j)).collect()
     };
-    (0..n as u32).into_par_iter().map_init(|| vec![0; n], row).collect()
+    (0..n as u32).into_par_iter().map_init(|| Around::new(n), row).collect()
 }
 
 /// `f_i` of every landmark.
@@ -92,29 +137,29 @@ fn false_sightings(counts: &CoVisibility, supports: &[Box<[u8]>], x: f64) -> Vec
     supports.par_iter().enumerate().map(own).collect()
 }
 
-/// `A_c` for `c >= 1`, and all pairs for `c = 0`: nearly all of them have no support.
-fn pairs_by_support(backbone: &Backbone, landmarks: usize) -> [f64; MOST_SUPPORT + 1] {
-    let stride = landmarks.div_ceil(SAMPLE);
-    let rows: Vec<u32> = (0..landmarks as u32).step_by(stride).collect();
-    let count = |(common, touched): &mut (Vec<u32>, Vec<u32>), i: u32| {
-        for &k in backbone.partners.of(i) {
-            for &j in backbone.partner_of.of(k).iter().filter(|&&j| j != i) {
-                if common[j as usize] == 0 {
-                    touched.push(j);
-                }
-                common[j as usize] += 1;
+/// `A_c` where there is support, and all pairs where there is none: nearly all of them have none.
+fn pairs_by_support(backbone: &Backbone, landmarks: usize) -> [f64; SUPPORTS] {
+    let rows: Vec<u32> = (0..landmarks as u32).step_by(landmarks.div_ceil(SAMPLE)).collect();
+    let sampled = rows.len() as f64;
+    let count = |(around, candidates): &mut (Around, Vec<u32>), i: u32| {
+        around.centre_on(backbone, i);
+        let near = around.marked.iter().filter(|&&k| around.marks[k as usize] & (PARTNER | SECOND) != 0);
+        candidates.clear();
+        candidates.extend(near.flat_map(|&k| backbone.partner_of.of(k)).filter(|&&j| j != i));
+        candidates.sort_unstable();
+        candidates.dedup();
+        let mut pairs = [0u64; SUPPORTS];
+        for &j in candidates.iter() {
+            let support = around.support(backbone, j);
+            if support != BACKBONE {
+                pairs[support as usize] += 1;
             }
-        }
-        let mut pairs = [0u64; MOST_SUPPORT + 1];
-        for j in touched.drain(..) {
-            pairs[MOST_SUPPORT.min(std::mem::take(&mut common[j as usize]) as usize)] += 1;
         }
         pairs
     };
-    let sampled = rows.len() as f64;
     let seen_from_both = rows
         .into_par_iter()
-        .map_init(|| (vec![0; landmarks], Vec::new()), count)
+        .map_init(|| (Around::new(landmarks), Vec::new()), count)
         .reduce(Default::default, |a, b| std::array::from_fn(|c| a[c] + b[c]));
     let n = landmarks as f64;
     let mut pairs = seen_from_both.map(|pairs| 0.5 * pairs as f64 * n / sampled);
@@ -144,9 +189,9 @@ impl Judge<'_> {
     }
 
     /// The first bucket that is kept, for each support.
-    fn cuts(&self, supports: &[Box<[u8]>], pairs: [f64; MOST_SUPPORT + 1]) -> [usize; MOST_SUPPORT + 1] {
+    fn cuts(&self, supports: &[Box<[u8]>], pairs: [f64; SUPPORTS]) -> [usize; SUPPORTS] {
         type Histogram = Vec<[u64; BUCKETS]>;
-        let none = || vec![[0; BUCKETS]; MOST_SUPPORT + 1];
+        let none = || vec![[0; BUCKETS]; SUPPORTS];
         let count = |mut histogram: Histogram, (i, supports): (usize, &Box<[u8]>)| {
             for (&support, bucket) in supports.iter().zip(self.buckets(i as u32)) {
                 if support != BACKBONE {
@@ -161,20 +206,24 @@ impl Judge<'_> {
         };
         let histogram = supports.par_iter().enumerate().fold(none, count).reduce(none, add);
         // Every link was counted from both its ends.
-        std::array::from_fn(|c| cut(&histogram[c].map(|links| 0.5 * links as f64), pairs[c]))
+        let links = |support: usize| histogram[support].map(|links| 0.5 * links as f64);
+        std::array::from_fn(|c| cut(&links(c), pairs[c], FALSE_SHARES[c.min(2)]))
     }
 }
 
 /// The lowest bucket from which on chance makes at most its share of the links.
-fn cut(links: &[f64; BUCKETS], pairs: f64) -> usize {
+fn cut(links: &[f64; BUCKETS], pairs: f64, share: f64) -> usize {
     let mut kept = 0.0;
     let mut cut = BUCKETS - 1;
     for bucket in (0..BUCKETS).rev() {
         kept += links[bucket];
         let p = (-(bucket as f64) / PER_UNIT).exp();
-        if pairs * p <= FALSE_SHARE * kept {
+        if pairs * p <= share * kept {
             cut = bucket;
         }
     }
     cut
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{ComponentReport, Method, Warning};
+use crate::{ComponentReport, HonestyReport, Method, Warning};
 
 const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
 {"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1},
@@ -136,6 +136,7 @@ proptest! {
         let params = MapperParams { seed, ..MapperParams::default() };
         let report = BuildReport {
             stress1,
+            honesty: HonestyReport { set_aside: seed, misrecognition: Some(stress1) },
             components: vec![ComponentReport {
                 landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true,
             }],

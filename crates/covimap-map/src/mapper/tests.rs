@@ -212,3 +212,32 @@ fn the_same_bits_on_one_thread_and_on_three() {
         assert_eq!(run(1), run(3), "{method:?}");
     }
 }
+
+#[test]
+fn a_landmark_without_an_honest_link_is_kept_and_told() {
+    // Every hundredth sighting is of another landmark, now and then of 300, which is nowhere.
+    let points = scattered(300, [5.0, 6.0], 1);
+    let mut looks = looks(&points, [5.0, 6.0], 0.6, 6000);
+    for (number, look) in looks.iter_mut().enumerate() {
+        if number % 10 == 0
+            && let Some(seen) = look.last_mut()
+        {
+            *seen = if number % 200 == 0 { 300 } else { number * 7919 % 300 };
+        }
+        look.sort_unstable();
+        look.dedup();
+    }
+    let map = build(&log_of(&looks), Method::Auto).unwrap();
+    let report = map.report();
+    assert_eq!((map.len(), report.components.len(), report.components[0].landmarks), (301, 2, 300));
+    let of_300 = map.names().iter().position(|id| id == "300").unwrap();
+    let placed = map.landmarks()[of_300];
+    assert_eq!((placed.component, placed.partners, placed.position), (1, 0, [0.0, 0.0]));
+    assert!(placed.sightings > 25, "{placed:?}");
+    let told = report.honesty.misrecognition.unwrap();
+    assert!((0.006..0.014).contains(&told) && report.honesty.set_aside > 1000, "{:?}", report.honesty);
+    let about = |kind: &str| report.warnings.iter().find(|warning| warning.kind == kind).unwrap();
+    assert_eq!(about("all_links_doubtful").examples, ["300"]);
+    assert_eq!(about("misrecognition").count, report.honesty.set_aside);
+    assert!(report.warnings.iter().all(|warning| warning.kind != "never_together"));
+}

@@ -103,9 +103,6 @@ pub(crate) fn refine(
             break;
         }
     }
-    if std::env::var("TR").is_ok() {
-        eprintln!("{:?}", model.sensor);
-    }
     Ok(model)
 }
 

@@ -92,4 +92,21 @@ mod tests {
         assert_eq!((sets.seen(0), sets.times(0)), ([0, 1].as_slice(), 2.0));
         assert_eq!((sets.seen(1), sets.times(1)), ([0, 1, 2].as_slice(), 1.0));
     }
+
+    #[test]
+    fn a_step_is_a_set_of_every_component_that_it_shows_twice() {
+        let log = SightingLog::from_steps([
+            vec!["A", "B", "C", "D", "E"],
+            vec!["A", "B", "D"],
+            vec!["C", "D", "E"],
+            vec!["A", "D"],
+        ]);
+        // A, B and C; D and E: a step that shows but one of the two says nothing of them.
+        let [abc, de] = &SeenSets::by_component(&log, &[vec![0, 1, 2], vec![3, 4]])[..] else {
+            panic!("one list of sets a component");
+        };
+        assert_eq!((abc.len(), abc.seen(0), abc.times(0)), (2, [0, 1].as_slice(), 1.0));
+        assert_eq!((abc.seen(1), abc.times(1)), ([0, 1, 2].as_slice(), 1.0));
+        assert_eq!((de.len(), de.seen(0), de.times(0)), (1, [0, 1].as_slice(), 2.0));
+    }
 }

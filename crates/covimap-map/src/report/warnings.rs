@@ -74,26 +74,14 @@ pub(crate) fn warnings(
     .into_iter()
     .flatten()
     .collect();
-    warnings.extend(misrecognition_warning(honesty));
-    warnings.extend(component_warnings(components));
+    warnings.extend(warnings_without_ids(honesty, components));
     warnings
 }
 
-fn misrecognition_warning(honesty: HonestyReport) -> Option<Warning> {
-    let rate = honesty.misrecognition.filter(|&rate| rate >= NOTABLE)?;
-    Some(Warning {
-        kind: "misrecognition".to_owned(),
-        count: honesty.set_aside,
-        examples: Vec::new(),
-        message: format!(
-            "pairs seen together by mistake, it seems, and not linked: about {:.1} % of the sightings show \
-             another landmark than was there; look at the recogniser",
-            100.0 * rate
-        ),
-    })
-}
-
-fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Warning> {
+fn warnings_without_ids(
+    honesty: HonestyReport,
+    components: &[ComponentReport],
+) -> impl Iterator<Item = Warning> {
     let warn = |kind: &str, count: usize, message: String| {
         (count > 0).then(|| Warning {
             kind: kind.to_owned(),
@@ -102,10 +90,20 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
             message,
         })
     };
+    let misread = honesty.misrecognition.filter(|&rate| rate >= NOTABLE);
     let several = components.len() > 1;
     let unfinished = components.iter().filter(|component| !component.converged).count();
     let tiny = components.len() == 1 && components[0].landmarks <= 3;
     [
+        warn(
+            "misrecognition",
+            misread.map_or(0, |_| honesty.set_aside as usize),
+            format!(
+                "pairs seem to be seen together by mistake only and are not linked: about {:.1} % of the sightings \
+                 show another landmark than was there; look at the recogniser",
+                100.0 * misread.unwrap_or(0.0)
+            ),
+        ),
         warn(
             "components",
             if several { components.len() } else { 0 },

@@ -5,7 +5,7 @@ use super::*;
 use crate::places::posterior::Witness;
 use crate::places::sensor::Sensor;
 
-const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9 };
+const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9, false_sighting: 1e-3 };
 
 /// Logarithm of the summed likelihood over the places, eq. (2), with the exact curve.
 fn log_likelihood(witnesses: &[Witness], places: &[(Point, f64)]) -> f64 {
@@ -16,7 +16,7 @@ fn likelihoods(witnesses: &[Witness], places: &[(Point, f64)]) -> Vec<f64> {
     let factor = |witness: &Witness, place: Point| {
         let away = (witness.at[0] - place[0]).hypot(witness.at[1] - place[1]);
         let v = 1.0 / (1.0 + ((away - SENSOR.range) / SENSOR.edge).exp());
-        let p = probability(witness.detectability, v);
+        let p = SENSOR.probability(witness.detectability, v);
         if witness.seen { p } else { 1.0 - p }
     };
     places.iter().map(|&(place, _)| witnesses.iter().map(|w| factor(w, place)).product()).collect()
@@ -50,7 +50,7 @@ fn scores_are_derivatives_of_the_marginal_likelihood() {
     for seed in 0..20 {
         let (witnesses, places) = random_step(seed);
         let mut board = ScoreBoard::new(9);
-        board.gather(&Step { witnesses: &witnesses, places: &places }, 3.0, &curve);
+        board.gather(&Step { witnesses: &witnesses, places: &places }, 3.0, &curve, SENSOR);
         for (landmark, scores) in board.take() {
             let at = |change: &dyn Fn(&mut Witness, f64)| {
                 let by = 1e-5;
@@ -88,7 +88,7 @@ fn information_computed_by_hand() {
     let witness = Witness { landmark: 2, at: [0.6, 0.0], detectability: 0.9, seen: true };
     let step = Step { witnesses: &[witness], places: &[([0.0, 0.0], 1.0)] };
     let mut board = ScoreBoard::new(3);
-    board.gather(&step, 2.0, &Curve::new(SENSOR, 3.2 * SENSOR.range));
+    board.gather(&step, 2.0, &Curve::new(SENSOR, 3.2 * SENSOR.range), SENSOR);
     let scores = board.take();
     assert_eq!(scores.len(), 1);
     let (landmark, scores) = scores[0];

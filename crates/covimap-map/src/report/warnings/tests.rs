@@ -89,3 +89,19 @@ fn ten_examples_are_named_and_the_rest_counted() {
     let named: Vec<&str> = ids[..10].iter().map(String::as_str).collect();
     assert_eq!(found, [warning("never_together", 25, &named)]);
 }
+
+#[test]
+fn misrecognition_is_told_where_it_is_notable() {
+    let log = SightingLog::from_steps(SOUND.iter().map(|step| step.iter().copied()));
+    let counts = counts_of(&log);
+    let found = |misrecognition, set_aside| {
+        let honesty = HonestyReport { set_aside, misrecognition };
+        warnings(&counts, &LinkGraph::from_counts(&counts), honesty, &[component(5, true)], log.names())
+    };
+    let warning = &found(Some(0.0213), 412)[0];
+    assert_eq!((warning.kind.as_str(), warning.count, warning.examples.len()), ("misrecognition", 412, 0));
+    assert!(warning.message.contains("about 2.1 % of the sightings"), "{}", warning.message);
+    for silent in [found(None, 0), found(Some(0.0), 0), found(Some(0.0019), 12)] {
+        assert_eq!(silent, []);
+    }
+}
