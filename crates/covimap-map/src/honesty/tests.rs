@@ -68,7 +68,7 @@ fn chance_links_are_set_aside_and_the_error_rate_is_told() {
         let far = |&&(i, j, ..): &&(usize, usize, u32, bool)| distance(points[i], points[j]) > FAR;
         let kept = verdicts.iter().filter(far).filter(|verdict| verdict.3).count();
         let all = verdicts.iter().filter(far).count();
-        assert!(all > 3000 && kept <= 3, "{kept} of {all} at {share}");
+        assert!(all > 2000 && kept <= 3, "{kept} of {all} at {share}");
         // of the co-sightings of near ones, which are true but for a few, nearly all are.
         let near = || verdicts.iter().filter(|verdict| !far(verdict));
         let together: u32 = near().map(|verdict| verdict.2).sum();
@@ -87,7 +87,7 @@ fn an_id_that_anything_is_misread_for_is_found_out() {
     let far = |&(i, j, ..): &(usize, usize, u32, bool)| distance(points[i], points[j]) > FAR;
     // As it is misread for all, it is seen with most others, and with each of them often.
     let counts_of_far: Vec<u32> = of_17().filter(far).map(|verdict| verdict.2).collect();
-    assert!(counts_of_far.len() > 200 && counts_of_far.iter().max() > Some(&10));
+    assert!(counts_of_far.len() > 100 && counts_of_far.iter().min() > Some(&10));
     assert_eq!(of_17().filter(far).filter(|verdict| verdict.3).count(), 0);
     // The partners next to it stay.
     let next = |&(i, j, ..): &(usize, usize, u32, bool)| distance(points[i], points[j]) < 0.5 * RANGE;
@@ -134,12 +134,12 @@ fn a_door_of_weak_links_stays_open() {
 #[test]
 fn a_landmark_that_is_nowhere_loses_all_its_links() {
     let (_, mut looks) = hall(9000);
-    // Nothing has the ID 300: it is read in a sighting of every thousand, beside other errors.
-    misread(&mut looks, 0.02, |rng| if rng.random_bool(0.05) { 300 } else { rng.random_range(0..300) });
+    // Nothing has the ID 300, but landmarks are misread for it as for any other.
+    misread(&mut looks, 0.02, |rng| rng.random_range(0..301));
     let counts = counts_of(&log_of(&looks));
     let honest = HonestLinks::judge(&counts);
     let graph = LinkGraph::from_honest(&counts, &honest);
-    assert!(counts.row(LandmarkId(300)).0.len() > 100);
+    assert!(counts.row(LandmarkId(300)).0.len() > 20);
     assert_eq!(graph.of(300), []);
     let sizes: Vec<usize> = graph.components().iter().map(Vec::len).collect();
     assert_eq!(sizes, [300, 1]);

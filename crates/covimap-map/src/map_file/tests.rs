@@ -6,7 +6,7 @@ use crate::{ComponentReport, HonestyReport, Method, Warning};
 const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
 {"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1},
 {"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1}
-],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
+],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"honesty":{"set_aside":0,"misrecognition":null},"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
 "#;
 
 fn text(map: &GlobalMap) -> String {

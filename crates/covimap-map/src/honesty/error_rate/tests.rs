@@ -40,9 +40,9 @@ fn far_is_where_the_rate_does_not_fall_any_more() {
 #[test]
 fn shells_are_those_of_a_slow_search() {
     // A long corridor, so that all shells occur, and a part of the map that is not reached.
-    let mut points = scattered(150, [12.0, 1.0], 1);
+    let mut points = scattered(150, [30.0, 0.5], 1);
     points.extend(scattered(40, [2.0, 2.0], 2).iter().map(|[x, y]| [x + 40.0, *y]));
-    let mut seen = looks(&points[..150], [12.0, 1.0], 0.6, 3000);
+    let mut seen = looks(&points[..150], [30.0, 0.5], 0.6, 3000);
     let apart: Vec<_> = points[150..].iter().map(|[x, y]| [x - 40.0, *y]).collect();
     seen.extend(
         looks(&apart, [2.0, 2.0], 0.6, 900).iter().map(|look| look.iter().map(|i| i + 150).collect()),
@@ -51,6 +51,7 @@ fn shells_are_those_of_a_slow_search() {
     let backbone = Backbone::new(&counts, upper_bound(&counts));
     let n = 190;
     let mut walk = Walk::new(n);
+    let mut all_beyond = 0;
     for start in [0u32, 3, 77, 160] {
         // Bellman-Ford on the steps.
         let mut steps = vec![usize::MAX; n];
@@ -75,6 +76,7 @@ fn shells_are_those_of_a_slow_search() {
             }
         }
         assert_eq!(walk.shells(&counts, &backbone, start), wanted, "from {start}");
-        assert!(start == 160 || wanted[FARTHEST + 1].exposure > 0);
+        all_beyond += wanted[FARTHEST + 1].exposure;
     }
+    assert!(all_beyond > 0);
 }
