@@ -47,12 +47,12 @@ pub(super) fn judge(counts: &CoVisibility, backbone: &Backbone, x: f64) -> Kept 
     let supports = supports(counts, backbone);
     let judge = Judge { counts, false_sightings: false_sightings(counts, &supports, x) };
     let cuts = judge.cuts(&supports, pairs_by_support(backbone, counts.landmarks()));
-    let kept = |(i, supports): (usize, &Box<[u8]>)| {
-        let buckets = judge.buckets(i as u32);
+    let rows = supports.par_iter().enumerate();
+    rows.map(|(i, supports)| {
         let kept = |(&support, bucket): (&u8, usize)| support == BACKBONE || bucket >= cuts[support as usize];
-        supports.iter().zip(buckets).map(kept).collect()
-    };
-    supports.par_iter().enumerate().map(kept).collect()
+        supports.iter().zip(judge.buckets(i as u32)).map(kept).collect()
+    })
+    .collect()
 }
 
 /// Landmarks around one landmark of the backbone.
@@ -127,14 +127,15 @@ fn false_sightings(counts: &CoVisibility, supports: &[Box<[u8]>], x: f64) -> Vec
     let all: f64 = counts.sightings().iter().map(|&n| f64::from(n)).sum();
     let mean = x * steps;
     let of_all = mean * counts.landmarks() as f64;
-    let own = |(i, supports): (usize, &Box<[u8]>)| {
+    let rows = supports.par_iter().enumerate();
+    rows.map(|(i, supports)| {
         let (_, together) = counts.row(LandmarkId(i as u32));
         let unsupported = supports.iter().zip(together).filter(|(support, _)| **support == 0);
         let unsupported: u64 = unsupported.map(|(_, &both)| u64::from(both)).sum();
         let own = (steps * unsupported as f64 - f64::from(counts.sightings()[i]) * of_all) / all;
         mean.max(own - 2.0 * own.max(0.0).sqrt())
-    };
-    supports.par_iter().enumerate().map(own).collect()
+    })
+    .collect()
 }
 
 /// `A_c` where there is support, and all pairs where there is none: nearly all of them have none.
@@ -192,19 +193,20 @@ impl Judge<'_> {
     fn cuts(&self, supports: &[Box<[u8]>], pairs: [f64; SUPPORTS]) -> [usize; SUPPORTS] {
         type Histogram = Vec<[u64; BUCKETS]>;
         let none = || vec![[0; BUCKETS]; SUPPORTS];
-        let count = |mut histogram: Histogram, (i, supports): (usize, &Box<[u8]>)| {
+        let add = |mut a: Histogram, b: Histogram| {
+            a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(sum, more)| *sum += more);
+            a
+        };
+        let rows = supports.par_iter().enumerate();
+        let counted = rows.fold(none, |mut histogram, (i, supports)| {
             for (&support, bucket) in supports.iter().zip(self.buckets(i as u32)) {
                 if support != BACKBONE {
                     histogram[support as usize][bucket] += 1;
                 }
             }
             histogram
-        };
-        let add = |mut a: Histogram, b: Histogram| {
-            a.iter_mut().flatten().zip(b.iter().flatten()).for_each(|(sum, more)| *sum += more);
-            a
-        };
-        let histogram = supports.par_iter().enumerate().fold(none, count).reduce(none, add);
+        });
+        let histogram = counted.reduce(none, add);
         // Every link was counted from both its ends.
         let links = |support: usize| histogram[support].map(|links| 0.5 * links as f64);
         std::array::from_fn(|c| cut(&links(c), pairs[c], FALSE_SHARES[c.min(2)]))
