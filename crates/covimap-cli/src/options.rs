@@ -17,13 +17,26 @@ pub struct LogArgs {
     /// Logs of sightings, read as one log in this order; `-` is stdin, .gz and .zst are unpacked
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
+    #[command(flatten)]
+    format: FormatArg,
+}
+
+impl LogArgs {
+    pub fn format(&self) -> Option<LogFormat> {
+        self.format.get()
+    }
+}
+
+/// What logs are written in.
+#[derive(Debug, clap::Args)]
+pub struct FormatArg {
     /// Format of the logs, when their names do not tell
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatName>,
 }
 
-impl LogArgs {
-    pub fn format(&self) -> Option<LogFormat> {
+impl FormatArg {
+    pub fn get(&self) -> Option<LogFormat> {
         self.format.map(LogFormat::from)
     }
 }

@@ -161,6 +161,19 @@ pub enum MapError {
         /// Fewest that a component needs.
         fewest: usize,
     },
+    /// A log that a map was not made of.
+    #[error(
+        "the map was not made of this log: {id:?} is in one of the two only, the map has {map} landmarks and the \
+         log {log}; give the log that the map was made of"
+    )]
+    OtherLog {
+        /// A landmark that one of the two lacks.
+        id: String,
+        /// Landmarks of the map.
+        map: usize,
+        /// Landmarks of the log.
+        log: usize,
+    },
     /// A fit or an embedding that the numbers do not allow.
     #[error(transparent)]
     Embed(#[from] EmbedError),

@@ -220,3 +220,35 @@ fn the_same_bits_on_one_thread_and_on_three() {
         assert_eq!(run(1), run(3), "{method:?}");
     }
 }
+
+#[test]
+fn a_start_of_ones_own_may_be_in_any_frame_and_unit() {
+    let points = scattered(30, [2.0, 2.0], 3);
+    let log = log_of(&looks(&points, [2.0, 2.0], 0.6, 600));
+    let from = |start: &[Point], method| mapper(method).build_from(&log, start, &Silent).unwrap();
+    let map = from(&points, Method::Auto);
+    // Turned by a right angle, mirrored, and in millimetres somewhere else.
+    let moved: Vec<Point> = points.iter().map(|[x, y]| [1000.0 * y + 77.0, 1000.0 * x - 5.0]).collect();
+    for (a, b) in map.landmarks().iter().zip(from(&moved, Method::Auto).landmarks()) {
+        assert!(distance(a.position, b.position) < 1e-4, "{:?} {:?}", a.position, b.position);
+    }
+    assert_eq!(map.report().regions, 1);
+    // The paper's method has no start; what is built is a map by auto, and says so.
+    assert_eq!(from(&points, Method::Classical), map);
+}
+
+#[test]
+fn starts_that_do_not_fit_the_log() {
+    let log = SightingLog::from_steps([["A", "B"], ["B", "C"]]);
+    let refusal = |start: &[Point]| mapper(Method::Auto).build_from(&log, start, &Silent).unwrap_err();
+    assert!(matches!(
+        refusal(&[[0.0; 2]; 2]),
+        MapError::Embed(EmbedError::BadStart { found: 2, wanted: 3, .. })
+    ));
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(matches!(refusal(&[[0.0; 2], [1.0, bad], [1.0; 2]]), MapError::NotFinite { index: 1, .. }));
+    }
+    // All in one place: no scale, and no way out.
+    let map = mapper(Method::Auto).build_from(&log, &[[1.0; 2]; 3], &Silent).unwrap();
+    assert!(map.landmarks().iter().all(|placed| placed.position.iter().all(|v| v.is_finite())));
+}
