@@ -46,7 +46,8 @@ impl Mapper {
     /// are those of [`Method::Auto`], whatever the method of the parameters.
     ///
     /// # Errors
-    /// As [`Mapper::build`]; [`MapError::Embed`] for a start of another length, [`MapError::NotFinite`] for a
+    /// As [`Mapper::build`]; [`MapError::Embed`] for a start of another length or with all landmarks of a
+    /// component in one place, [`MapError::NotFinite`] for a
     /// position that is nowhere.
     pub fn build_from(
         &self,
@@ -110,7 +111,7 @@ impl Mapper {
             None => map_component(graph, sets, params, observer),
             Some(all) => {
                 let own: Vec<Point> = members.iter().map(|&member| all[member as usize]).collect();
-                settle(graph, sets, &in_map_units(graph, own), params, observer)
+                settle(graph, sets, &in_map_units(graph, own)?, params, observer)
             }
         };
         let map = |(members, sets): (&Vec<u32>, &SeenSets)| {
@@ -126,9 +127,11 @@ impl Mapper {
     }
 }
 
-/// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best; as they are where
-/// all links have length 0.
-fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Vec<Point> {
+/// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
+///
+/// # Errors
+/// [`EmbedError::CoincidingPoints`] where all links have length 0.
+fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Result<Vec<Point>, EmbedError> {
     let (mut across, mut square) = (0.0, 0.0);
     for (i, here) in points.iter().enumerate() {
         for link in graph.of(i as u32) {
@@ -138,8 +141,11 @@ fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Vec<Point> {
             square += link.weight * length * length;
         }
     }
+    if graph.link_count() > 0 && square <= 0.0 {
+        return Err(EmbedError::CoincidingPoints { pairs: graph.link_count() });
+    }
     let scale = if square > 0.0 { across / square } else { 1.0 };
-    points.into_iter().map(|point| point.map(|coordinate| scale * coordinate)).collect()
+    Ok(points.into_iter().map(|point| point.map(|coordinate| scale * coordinate)).collect())
 }
 
 fn check_information(counts: &CoVisibility) -> Result<(), MapError> {

@@ -57,11 +57,9 @@ impl BoundSum {
 
     /// The bound; `None` for no landmarks, or where landmarks stand in one place.
     pub fn bound(self) -> Option<Bound> {
-        let bound = Bound {
-            rmse: (self.squares / self.landmarks).sqrt(),
-            delaunay_error: (self.delaunay / self.landmarks).min(2.0),
-        };
-        (bound.rmse.is_finite() && bound.delaunay_error.is_finite()).then_some(bound)
+        let [square, delaunay] = [self.squares, self.delaunay].map(|sum| sum / self.landmarks);
+        (square.is_finite() && delaunay.is_finite())
+            .then(|| Bound { rmse: square.sqrt(), delaunay_error: delaunay.min(2.0) })
     }
 }
 

@@ -248,7 +248,7 @@ fn starts_that_do_not_fit_the_log() {
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(matches!(refusal(&[[0.0; 2], [1.0, bad], [1.0; 2]]), MapError::NotFinite { index: 1, .. }));
     }
-    // All in one place: no scale, and no way out.
-    let map = mapper(Method::Auto).build_from(&log, &[[1.0; 2]; 3], &Silent).unwrap();
-    assert!(map.landmarks().iter().all(|placed| placed.position.iter().all(|v| v.is_finite())));
+    // All in one place: no scale.
+    let refused = refusal(&[[1.0; 2]; 3]);
+    assert!(matches!(refused, MapError::Embed(EmbedError::CoincidingPoints { pairs: 2 })), "{refused}");
 }
