@@ -132,6 +132,22 @@ fn all_motions_but_way_points_come_past_every_part_of_a_corridor() {
 }
 
 #[test]
+fn a_doorway_that_leaves_the_robot_a_single_point_is_a_way_too() {
+    // Legs of 1.8 m cut into patches leave openings of twice the clearance and a rounding error.
+    let floor = Floor::Spiral { corridor: 1.6, wall: 0.2 };
+    let world = world(floor, 4000);
+    let passages = Patches::new(world.plan(), 0.05).unwrap();
+    let shortest = (0..passages.len())
+        .flat_map(|patch| passages.doorways(patch))
+        .map(|doorway| doorway.passage.length())
+        .fold(f64::INFINITY, f64::min);
+    assert!(shortest < 1e-12, "{shortest}");
+    assert!(
+        poses(&world, &run(Motion::Patrol {}, 80_000), 1).iter().all(|pose| is_on_floor(&world, pose.at))
+    );
+}
+
+#[test]
 fn way_points_are_reached_through_doors() {
     let world = world(Floor::Office { room: 2.0, door: 0.9, missing_doors: 0.3 }, 800);
     let poses = poses(&world, &run(Motion::Waypoints {}, 20_000), 1);
