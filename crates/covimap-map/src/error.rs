@@ -163,7 +163,7 @@ pub enum MapError {
     },
     /// A build is expected to take more memory than it may.
     #[error(
-        "the build would take about {} MB of memory, {} MB are allowed - {landmarks} landmarks, about {pairs} pairs; \
+        "the build may take {} MB of memory, {} MB are allowed - {landmarks} landmarks, about {pairs} pairs; \
          allow more or map parts of the log", needed.div_ceil(1_000_000), allowed / 1_000_000
     )]
     TooLittleMemory {
