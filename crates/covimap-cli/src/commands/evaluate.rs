@@ -23,7 +23,7 @@ pub struct Args {
     /// Seed of the sample of triangles that stands for all of them in a large map
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// The log of the map, once for each of several: also tell what it allows, by minimising from the truth
+    /// The log of the map, once for each of several: also tell what the log allows, by minimising from the truth
     #[arg(long, value_name = "LOG")]
     limit: Vec<PathBuf>,
     #[command(flatten)]
@@ -45,29 +45,28 @@ impl Args {
         let truth = Truth::read(&self.truth)?;
         let mut params = EvaluateParams::default();
         params.seed = self.seed;
-        let found = if self.limit.is_empty() {
+        if self.limit.is_empty() {
             let found = evaluate::against(&map, &truth, &params)?;
-            let json = self.json.then(|| serde_json::to_value(&found)).transpose()?;
-            console::print(json.map_or_else(|| text(&found), |json| json.to_string()))?;
-            found
+            console::print(if self.json { serde_json::to_string(&found)? } else { text(&found) })?;
+            self.say_left_out(&found, console);
         } else {
             let limit = self.limit(&map, &truth, &params, console)?;
             console::print(if self.json { limit_json(&limit)?.to_string() } else { limit_text(&limit) })?;
-            limit.map
-        };
-        if self.json {
-            return Ok(());
+            self.say_left_out(&limit.map, console);
         }
-        for (count, where_from) in [
+        Ok(())
+    }
+
+    /// Says to people what was not compared; programs find it in the JSON.
+    fn say_left_out(&self, found: &Evaluation, console: Console) {
+        let counts = [
             (found.missing, "of the truth not in the map"),
             (found.unknown, "of the map not in the truth"),
             (found.isolated, "in components that share fewer than three with the truth"),
-        ] {
-            if count > 0 {
-                console.say(format_args!("left out: {} {where_from}", counted(count as u64, "landmark")));
-            }
+        ];
+        for (count, where_from) in counts.into_iter().filter(|&(count, _)| count > 0 && !self.json) {
+            console.say(format_args!("left out: {} {where_from}", counted(count as u64, "landmark")));
         }
-        Ok(())
     }
 
     fn limit(
