@@ -25,15 +25,11 @@ pub(crate) fn map_component(
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    let stage = |stage, total| {
-        observer.started(stage, total);
-        if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
-    };
-    stage(Stage::Regions, None)?;
+    begin(Stage::Regions, None, observer)?;
     let cover = RegionCover::new(graph, params.regions);
     observer.finished(Stage::Regions);
 
-    stage(Stage::LocalMaps, Some(cover.regions().len() as u64))?;
+    begin(Stage::LocalMaps, Some(cover.regions().len() as u64), observer)?;
     let maps = cover
         .regions()
         .par_iter()
@@ -48,19 +44,31 @@ pub(crate) fn map_component(
         .collect::<Result<Vec<_>, MapError>>()?;
     observer.finished(Stage::LocalMaps);
 
-    stage(Stage::Stitch, None)?;
+    begin(Stage::Stitch, None, observer)?;
     let start = stitch::stitch(graph, &cover, &maps)?;
     observer.finished(Stage::Stitch);
 
-    stage(Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
+    let settled = settle(graph, sets, &start, params, observer)?;
+    Ok(ComponentMap { region: cover.core_of().to_vec(), regions: cover.regions().len(), ..settled })
+}
+
+/// Polishes and refines a connected component from a start in map units; it counts as one region.
+pub(crate) fn settle(
+    graph: &LinkGraph,
+    sets: &SeenSets,
+    start: &[Point],
+    params: &AutoParams,
+    observer: &dyn Observer,
+) -> Result<ComponentMap, MapError> {
+    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = graph.to_pairs();
-    let polished = polish(&pairs, &start, params, observer)?;
+    let polished = polish(&pairs, start, params, observer)?;
     observer.finished(Stage::Polish);
 
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
         polished.points
     } else {
-        stage(Stage::Refine, Some(params.refine_iterations as u64))?;
+        begin(Stage::Refine, Some(params.refine_iterations as u64), observer)?;
         let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
         observer.finished(Stage::Refine);
         refined.points
@@ -69,13 +77,19 @@ pub(crate) fn map_component(
         stress1: stress1(&pairs, &points),
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,
+        region: vec![0; points.len()],
+        regions: 1,
         points,
-        region: cover.core_of().to_vec(),
-        regions: cover.regions().len(),
     })
 }
 
-/// Least stress over all links, from the stitched start.
+/// Tells the observer of a stage, unless it asks to stop.
+fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
+    observer.started(stage, total);
+    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+}
+
+/// Least stress over all links, from a start.
 fn polish(
     pairs: &PairDistances,
     start: &[Point],

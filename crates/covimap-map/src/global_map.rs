@@ -4,7 +4,7 @@ use covimap_embed::Point;
 
 use rustc_hash::FxHashSet;
 
-use crate::{BuildReport, LandmarkNames, MapError, MapperParams};
+use crate::{BuildReport, LandmarkNames, MapError, MapperParams, Sensing};
 
 /// Where one landmark was placed, and on what evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +28,7 @@ pub struct GlobalMap {
     pub(crate) landmarks: Vec<PlacedLandmark>,
     pub(crate) params: MapperParams,
     pub(crate) report: BuildReport,
+    pub(crate) sensing: Option<Sensing>,
 }
 
 impl GlobalMap {
@@ -60,7 +61,27 @@ impl GlobalMap {
                 ));
             }
         }
-        Ok(Self { names, landmarks, params, report })
+        Ok(Self { names, landmarks, params, report, sensing: None })
+    }
+
+    /// The map with what it knows of its sensor.
+    ///
+    /// # Errors
+    /// [`MapError::InvalidMap`] when that is of other landmarks or components than the map's.
+    pub fn with_sensing(mut self, sensing: Sensing) -> Result<Self, MapError> {
+        let components = self.landmarks.iter().map(|placed| placed.component as usize + 1).max().unwrap_or(0);
+        let (landmarks, sensors) = (sensing.landmarks(), sensing.sensors().len());
+        if landmarks != self.len() || sensors < components {
+            return Err(MapError::InvalidMap {
+                what: format!(
+                    "{landmarks} landmarks and {sensors} components have a sensor model, the map has {} and \
+                     {components}; build the map again",
+                    self.len()
+                ),
+            });
+        }
+        self.sensing = Some(sensing);
+        Ok(self)
     }
 
     /// Number of landmarks.
@@ -85,6 +106,13 @@ impl GlobalMap {
     #[must_use]
     pub fn landmarks(&self) -> &[PlacedLandmark] {
         &self.landmarks
+    }
+
+    /// What the map knows of its sensor; `None` if no component has three landmarks, or the file was
+    /// written without.
+    #[must_use]
+    pub fn sensing(&self) -> Option<&Sensing> {
+        self.sensing.as_ref()
     }
 
     /// The settings that made it.

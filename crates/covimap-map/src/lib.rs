@@ -16,12 +16,14 @@ mod links;
 mod local_map;
 mod map_file;
 mod mapper;
+mod memory;
 pub mod output;
 mod params;
 mod places;
 mod progress;
 mod regions;
 mod report;
+mod sensing;
 mod sightings;
 mod stitch;
 mod truth;
@@ -36,10 +38,12 @@ pub use landmarks::{LandmarkId, LandmarkNames};
 pub use links::{Link, LinkGraph};
 pub use local_map::LocalMap;
 pub use mapper::Mapper;
+pub use memory::MemoryEstimate;
 pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionParams, StopParams};
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
+pub use sensing::{Sensing, SensorModel};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };

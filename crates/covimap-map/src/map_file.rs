@@ -8,6 +8,10 @@
 //! ],"report":{"steps":5768}}
 //! ```
 //!
+//! A map that knows its sensor has more: `detectability` and `deviation` of each landmark, and after
+//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001}]`, one a
+//! component, and `"occluded":[[0,12]]`, pairs of places in the list of landmarks; see [`Sensing`].
+//!
 //! A landmark takes a line, so that `diff` and `grep` work. The bytes depend on the map alone.
 //! Numbers have the fewest digits that read back as the same number: a map that is saved and
 //! loaded is equal, and a file that is loaded and saved has the same bytes.
@@ -27,7 +31,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 
-use crate::{BuildReport, GlobalMap, LandmarkNames, MapError, MapperParams, PlacedLandmark, output};
+use crate::{
+    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapError, MapperParams, PlacedLandmark, Sensing,
+    SensorModel, output,
+};
 
 /// Format number that this build writes and reads.
 const FORMAT: u64 = 1;
@@ -45,6 +52,10 @@ struct Row<'a> {
     region: u32,
     sightings: u32,
     partners: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detectability: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deviation: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -54,6 +65,10 @@ struct Contents<'a> {
     settings: Map<String, Value>,
     #[serde(borrow)]
     landmarks: Vec<Row<'a>>,
+    #[serde(default)]
+    sensors: Vec<SensorModel>,
+    #[serde(default)]
+    occluded: Vec<[u32; 2]>,
     report: BuildReport,
 }
 
@@ -86,7 +101,16 @@ impl GlobalMap {
         write!(out, ",\"settings\":{},\"landmarks\":[", Value::Object(settings))?;
         for (index, (id, placed)) in self.names().iter().zip(self.landmarks()).enumerate() {
             out.write_all(if index == 0 { b"\n" } else { b",\n" })?;
-            serde_json::to_writer(&mut out, &Row::new(id, placed))?;
+            let row = Row::new(id, placed).with_sensing(self.sensing(), LandmarkId(index as u32));
+            serde_json::to_writer(&mut out, &row)?;
+        }
+        if let Some(sensing) = self.sensing() {
+            out.write_all(b"\n],\"sensors\":")?;
+            serde_json::to_writer(&mut out, sensing.sensors())?;
+            out.write_all(b",\"occluded\":[")?;
+            for (index, [a, b]) in sensing.occluded_pairs().enumerate() {
+                write!(out, "{}[{a},{b}]", if index == 0 { "" } else { "," })?;
+            }
         }
         out.write_all(b"\n],\"report\":")?;
         serde_json::to_writer(&mut out, self.report())?;
@@ -135,7 +159,19 @@ impl GlobalMap {
             names.push(&row.id);
             landmarks.push(row.placed());
         }
-        Self::from_parts(names, landmarks, params, contents.report).map_err(|error| match error {
+        let map = Self::from_parts(names, landmarks, params, contents.report);
+        let map = if contents.sensors.is_empty() {
+            map
+        } else {
+            // A number that is missing is as bad as one out of its range.
+            let column = |of: fn(&Row) -> Option<f64>| {
+                contents.landmarks.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect()
+            };
+            let (detectability, deviation) = (column(|row| row.detectability), column(|row| row.deviation));
+            Sensing::from_parts(contents.sensors, detectability, deviation, &contents.occluded)
+                .and_then(|sensing| map?.with_sensing(sensing))
+        };
+        map.map_err(|error| match error {
             MapError::InvalidMap { what } => MapError::InvalidMap { what: format!("{file}: {what}") },
             other => other,
         })
@@ -146,7 +182,15 @@ impl<'a> Row<'a> {
     fn new(id: &'a str, placed: &PlacedLandmark) -> Self {
         let [x, y] = placed.position;
         let PlacedLandmark { component, region, sightings, partners, .. } = *placed;
-        Self { id: Cow::Borrowed(id), x, y, component, region, sightings, partners }
+        let (detectability, deviation) = (None, None);
+        let id = Cow::Borrowed(id);
+        Self { id, x, y, component, region, sightings, partners, detectability, deviation }
+    }
+
+    fn with_sensing(self, sensing: Option<&Sensing>, id: LandmarkId) -> Self {
+        let Some(sensing) = sensing else { return self };
+        let (detectability, deviation) = (sensing.detectability(id), sensing.deviation(id));
+        Self { detectability: Some(detectability), deviation: Some(deviation), ..self }
     }
 
     fn placed(&self) -> PlacedLandmark {

@@ -1,11 +1,12 @@
 //! The pipeline: a log in, a [`GlobalMap`] out.
 
-use covimap_embed::{PairDistances, Point, stress1};
+use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 
 use crate::classical;
-use crate::component::{ComponentMap, map_component, put_in_frame};
+use crate::component::{ComponentMap, map_component, put_in_frame, settle};
 use crate::places::SeenSets;
 use crate::report::warnings;
+use crate::sensing;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
     LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
@@ -35,6 +36,43 @@ impl Mapper {
     /// all landmarks are always seen together; [`MapError::TooLargeForClassical`];
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
+        self.build_of(log, None, observer)
+    }
+
+    /// Polishes and refines from given positions, without regions and local maps: what the same minimisation
+    /// makes of a start of one's own, such as surveyed positions.
+    ///
+    /// `start` has a position for every landmark of the log, each component in any frame and unit. The stages
+    /// are those of [`Method::Auto`], whatever the method of the parameters.
+    ///
+    /// # Errors
+    /// As [`Mapper::build`]; [`MapError::Embed`] for a start of another length or with all landmarks of a
+    /// component in one place, [`MapError::NotFinite`] for a
+    /// position that is nowhere.
+    pub fn build_from(
+        &self,
+        log: &SightingLog,
+        start: &[Point],
+        observer: &dyn Observer,
+    ) -> Result<GlobalMap, MapError> {
+        let wanted = log.names().len();
+        if start.len() != wanted {
+            let what = "one position for each landmark is needed";
+            return Err(EmbedError::BadStart { what, found: start.len(), wanted }.into());
+        }
+        if let Some(index) = start.iter().position(|point| !point.iter().all(|v| v.is_finite())) {
+            return Err(MapError::NotFinite { index, position: start[index] });
+        }
+        let params = MapperParams { method: Method::Auto, ..self.params.clone() };
+        Self { params }.build_of(log, Some(start), observer)
+    }
+
+    fn build_of(
+        &self,
+        log: &SightingLog,
+        start: Option<&[Point]>,
+        observer: &dyn Observer,
+    ) -> Result<GlobalMap, MapError> {
         let counts = CoVisibility::count(log, observer)?;
         check_information(&counts)?;
         let (graph, honesty) = match self.params.method {
@@ -42,8 +80,9 @@ impl Mapper {
             Method::Classical => (LinkGraph::from_counts(&counts), HonestyReport::default()),
         };
         let components = graph.components();
+        let sets = SeenSets::by_component(log, &components);
         let maps: Vec<ComponentMap> = match self.params.method {
-            Method::Auto => self.auto_components(log, &graph, &components, observer)?,
+            Method::Auto => self.auto_components(&sets, &graph, &components, start, observer)?,
             Method::Classical => components
                 .iter()
                 .map(|members| {
@@ -51,30 +90,65 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
+        let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
+        let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
         let report = report(&counts, &graph, honesty, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
-        GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
+        let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?;
+        match sensing {
+            Some(sensing) => map.with_sensing(sensing),
+            None => Ok(map),
+        }
     }
 
     fn auto_components(
         &self,
-        log: &SightingLog,
+        sets: &[SeenSets],
         graph: &LinkGraph,
         components: &[Vec<u32>],
+        start: Option<&[Point]>,
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
-        let sets = SeenSets::by_component(log, components);
-        let map = |(members, sets): (&Vec<u32>, SeenSets)| {
+        let params = &self.params.auto;
+        let map_one = |graph: &LinkGraph, members: &[u32], sets: &SeenSets| match start {
+            None => map_component(graph, sets, params, observer),
+            Some(all) => {
+                let own: Vec<Point> = members.iter().map(|&member| all[member as usize]).collect();
+                settle(graph, sets, &in_map_units(graph, own)?, params, observer)
+            }
+        };
+        let map = |(members, sets): (&Vec<u32>, &SeenSets)| {
             let mut map = if members.len() == graph.landmarks() {
-                map_component(graph, &sets, &self.params.auto, observer)?
+                map_one(graph, members, sets)?
             } else {
-                map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
+                map_one(&graph.restricted_to(members), members, sets)?
             };
             put_in_frame(&mut map.points);
             Ok(map)
         };
         components.iter().zip(sets).map(map).collect()
     }
+}
+
+/// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
+///
+/// # Errors
+/// [`EmbedError::CoincidingPoints`] where all links have length 0.
+fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Result<Vec<Point>, EmbedError> {
+    let (mut across, mut square) = (0.0, 0.0);
+    for (i, here) in points.iter().enumerate() {
+        for link in graph.of(i as u32) {
+            let there = points[link.to as usize];
+            let length = (there[0] - here[0]).hypot(there[1] - here[1]);
+            across += link.weight * link.distance * length;
+            square += link.weight * length * length;
+        }
+    }
+    if graph.link_count() > 0 && square <= 0.0 {
+        return Err(EmbedError::CoincidingPoints { pairs: graph.link_count() });
+    }
+    let scale = if square > 0.0 { across / square } else { 1.0 };
+    Ok(points.into_iter().map(|point| point.map(|coordinate| scale * coordinate)).collect())
 }
 
 fn check_information(counts: &CoVisibility) -> Result<(), MapError> {

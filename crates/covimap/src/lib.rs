@@ -50,6 +50,8 @@
 pub use covimap_embed as embed;
 #[doc(inline)]
 pub use covimap_map::*;
+#[doc(inline)]
+pub use covimap_plan as plan;
 
 /// The documents, so that their Rust code is compiled and run.
 #[cfg(doctest)]

@@ -80,6 +80,18 @@ fn the_bytes_of_a_map_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn a_build_that_would_take_too_much_memory_is_refused_before_it_starts() {
+    let scratch = Scratch::with_square();
+    let refusal =
+        "MB of memory, 1 MB are allowed - 4 landmarks, about 5 pairs; allow more or map parts of the log";
+    scratch.refuses(&["build", "square.jsonl", "--max-memory", "1M"], 1, refusal);
+    scratch.refuses(&["build", "square.jsonl", "--max-memory", "much"], 2, "such as 800M or 1.5G");
+    let run = scratch.succeeds(&["build", "square.jsonl", "--max-memory", "1G", "--json"]);
+    assert!(run.stderr.contains("memory: about "), "{}", run.stderr);
+    assert!(run.json()["memory_estimate"].as_u64().unwrap() < 1_000_000_000);
+}
+
+#[test]
 fn several_logs_are_one_log_in_the_order_given() {
     let scratch = Scratch::with_square();
     let lines: Vec<_> = SQUARE.lines().collect();

@@ -38,6 +38,7 @@
 //! Econometrica 16, 1948.
 
 mod grid;
+mod observe;
 mod posterior;
 mod scoring;
 mod sensor;
@@ -49,6 +50,7 @@ use covimap_embed::Point;
 use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
+pub(crate) use observe::observe;
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 pub(crate) use sensor::Sensor;
@@ -90,15 +92,8 @@ pub(crate) fn refine(
     iterations: usize,
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
-    let range = half_far_link(graph, &start);
     let neighbours = Neighbours::new(graph);
-    let false_sighting = FALSE_SIGHTING.0;
-    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8, false_sighting };
-    let mut model = Model { detectability: Vec::new(), points: start, sensor };
-    for _ in 0..SENSOR_STEPS {
-        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
-        model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, true);
-    }
+    let mut model = fit_sensor(graph, &neighbours, sets, start);
     for _ in 0..iterations {
         let scores = landmark_scores(&neighbours, sets, &model, observer)?;
         let moved = model.move_landmarks(&scores);
@@ -109,6 +104,19 @@ pub(crate) fn refine(
         }
     }
     Ok(model)
+}
+
+/// The sensor that fits these positions best; detectabilities are all the same so far.
+fn fit_sensor(graph: &LinkGraph, neighbours: &Neighbours, sets: &SeenSets, points: Vec<Point>) -> Model {
+    let range = half_far_link(graph, &points);
+    let false_sighting = FALSE_SIGHTING.0;
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8, false_sighting };
+    let mut model = Model { detectability: Vec::new(), points, sensor };
+    for _ in 0..SENSOR_STEPS {
+        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
+        model.sensor = sensor_scores(neighbours, sets, &model).improve(model.sensor, true);
+    }
+    model
 }
 
 impl Model {

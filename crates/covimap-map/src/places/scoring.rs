@@ -5,6 +5,9 @@
 //! posterior weight `g` adds `g r D` to the score and `g D D' / (P (1 - P))` to the information.
 //! `D = -(p - e) v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
 //! detectability `p`.
+//!
+//! That information takes the places for known. What a log really says about a position is the sum
+//! over steps of `(sum_y g r D) (sum_y g r D)'`: a step that leaves its place open has a small score.
 
 use covimap_embed::Point;
 
@@ -24,6 +27,8 @@ pub(super) struct Scores {
     position: Point,
     /// Information of the position: xx, xy, yy.
     information: [f64; 3],
+    /// Observed information of the position, in which the places are unknown: xx, xy, yy.
+    observed: [f64; 3],
     detectability: f64,
     detectability_information: f64,
 }
@@ -96,8 +101,10 @@ impl Scores {
             }
         }
         let sum = |lanes: Lanes| f64::from(lanes.iter().sum::<f32>());
+        let [gx, gy] = [sum(gx), sum(gy)];
         Self {
-            position: [sum(gx), sum(gy)],
+            position: [gx, gy],
+            observed: [gx * gx, gx * gy, gy * gy],
             information: [sum(xx), sum(xy), sum(yy)],
             detectability: sum(gp),
             detectability_information: sum(pp),
@@ -108,6 +115,9 @@ impl Scores {
         self.position[0] += times * other.position[0];
         self.position[1] += times * other.position[1];
         for (sum, more) in self.information.iter_mut().zip(other.information) {
+            *sum += times * more;
+        }
+        for (sum, more) in self.observed.iter_mut().zip(other.observed) {
             *sum += times * more;
         }
         self.detectability += times * other.detectability;
@@ -135,6 +145,16 @@ impl Scores {
         let (xx, yy) = (xx + ridge, yy + ridge);
         let determinant = xx * yy - xy * xy;
         (determinant > 0.0).then(|| [yy, -xy, xx].map(|entry| entry / determinant))
+    }
+
+    /// Standard deviation of a coordinate, both axes taken together, that the log leaves to the
+    /// position; `loosest` where it says nothing.
+    pub fn deviation(&self, loosest: f64) -> f64 {
+        let [xx, xy, yy] = self.observed;
+        let least = 1.0 / (loosest * loosest);
+        let (xx, yy) = (xx + least, yy + least);
+        // Half the trace of the inverse.
+        ((xx + yy) / (2.0 * (xx * yy - xy * xy))).sqrt()
     }
 
     /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.

@@ -54,6 +54,18 @@ impl SeenSets {
         sets
     }
 
+    /// At most about `most` of the sets, evenly spread; each stands for those left out after it.
+    pub fn sample(&self, most: usize) -> Self {
+        let stride = self.len().div_ceil(most.max(1)).max(1);
+        let mut sample = Self { starts: vec![0], seen: Vec::new(), times: Vec::new() };
+        for first in (0..self.len()).step_by(stride) {
+            sample.seen.extend_from_slice(self.seen(first));
+            sample.starts.push(sample.seen.len());
+            sample.times.push(self.times[first..self.len().min(first + stride)].iter().sum());
+        }
+        sample
+    }
+
     /// Number of different sets.
     pub fn len(&self) -> usize {
         self.times.len()
@@ -108,5 +120,17 @@ mod tests {
         assert_eq!((abc.len(), abc.seen(0), abc.times(0)), (2, [0, 1].as_slice(), 1.0));
         assert_eq!((abc.seen(1), abc.times(1)), ([0, 1, 2].as_slice(), 1.0));
         assert_eq!((de.len(), de.seen(0), de.times(0)), (1, [0, 1].as_slice(), 2.0));
+    }
+
+    #[test]
+    fn a_sample_stands_for_all_sets() {
+        let steps = (0..10).map(|i| vec![i.to_string(), "last".to_owned()]);
+        let sets = &SeenSets::by_component(&SightingLog::from_steps(steps), &[(0..11).collect()])[0];
+        let sample = sets.sample(4);
+        // Every third of ten: three sets for three each, the last for itself.
+        assert_eq!((sample.len(), sample.times(0), sample.times(3)), (4, 3.0, 1.0));
+        assert_eq!(sample.seen(1), sets.seen(3));
+        assert_eq!(sets.sample(10).len(), 10);
+        assert_eq!(sets.sample(0).len(), 1);
     }
 }
