@@ -3,8 +3,12 @@
 use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
 use rayon::prelude::*;
 
+use crate::distances::{Alternated, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
-use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
+use crate::{
+    AutoParams, CoVisibility, LinkGraph, MapError, Observer, RegionCover, SightingLog, Stage, local_map,
+    stitch,
+};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -16,13 +20,24 @@ pub(crate) struct ComponentMap {
     pub stress1: f64,
     pub iterations: usize,
     pub converged: bool,
+    pub distances: Option<DistanceReport>,
+}
+
+/// What is known of a connected component besides its links.
+pub(crate) struct Evidence<'a> {
+    pub log: &'a SightingLog,
+    pub counts: &'a CoVisibility,
+    /// What the log calls landmark `k` of the component, ascending.
+    pub members: &'a [u32],
+    pub sets: &'a SeenSets,
 }
 
 /// Maps a connected component: regions, local maps, stitching, polish.
 pub(crate) fn map_component(
     graph: &LinkGraph,
-    sets: &SeenSets,
+    evidence: &Evidence,
     params: &AutoParams,
+    seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
     let stage = |stage, total| {
@@ -57,18 +72,28 @@ pub(crate) fn map_component(
     let polished = polish(&pairs, &start, params, observer)?;
     observer.finished(Stage::Polish);
 
+    stage(Stage::Distances, None)?;
+    let distances = Distances::new(graph, evidence.counts, evidence.log, evidence.members, seed);
+    let mut polished =
+        distances.alternate(Alternated::fixed(polished, pairs), params.distance, |pairs, start| {
+            polish(pairs, start, params, observer)
+        })?;
+    observer.finished(Stage::Distances);
+
+    let start = std::mem::take(&mut polished.embedding.points);
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        polished.points
+        start
     } else {
         stage(Stage::Refine, Some(params.refine_iterations as u64))?;
-        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
+        let refined = refine(graph, evidence.sets, start, params.refine_iterations, observer)?;
         observer.finished(Stage::Refine);
         refined.points
     };
     Ok(ComponentMap {
-        stress1: stress1(&pairs, &points),
-        iterations: polished.iterations,
-        converged: polished.termination == Termination::Converged,
+        stress1: stress1(&polished.pairs, &points),
+        iterations: polished.embedding.iterations,
+        converged: polished.embedding.termination == Termination::Converged,
+        distances: (!polished.pairs.pairs().is_empty()).then(|| distances.report(&polished, &points)),
         points,
         region: cover.core_of().to_vec(),
         regions: cover.regions().len(),

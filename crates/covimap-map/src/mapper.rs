@@ -3,7 +3,7 @@
 use covimap_embed::{PairDistances, Point, stress1};
 
 use crate::classical;
-use crate::component::{ComponentMap, map_component, put_in_frame};
+use crate::component::{ComponentMap, Evidence, map_component, put_in_frame};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
@@ -40,7 +40,7 @@ impl Mapper {
         let graph = LinkGraph::from_counts(&counts);
         let components = graph.components();
         let maps: Vec<ComponentMap> = match self.params.method {
-            Method::Auto => self.auto_components(log, &graph, &components, observer)?,
+            Method::Auto => self.auto_components(log, &counts, &graph, &components, observer)?,
             Method::Classical => components
                 .iter()
                 .map(|members| {
@@ -56,16 +56,19 @@ impl Mapper {
     fn auto_components(
         &self,
         log: &SightingLog,
+        counts: &CoVisibility,
         graph: &LinkGraph,
         components: &[Vec<u32>],
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
         let sets = SeenSets::by_component(log, components);
         let map = |(members, sets): (&Vec<u32>, SeenSets)| {
+            let evidence = Evidence { log, counts, members, sets: &sets };
+            let MapperParams { auto, seed, .. } = &self.params;
             let mut map = if members.len() == graph.landmarks() {
-                map_component(graph, &sets, &self.params.auto, observer)?
+                map_component(graph, &evidence, auto, *seed, observer)?
             } else {
-                map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
+                map_component(&graph.restricted_to(members), &evidence, auto, *seed, observer)?
             };
             put_in_frame(&mut map.points);
             Ok(map)
@@ -113,6 +116,7 @@ fn classical_component(
         regions: 1,
         iterations: 0,
         converged: true,
+        distances: None,
     })
 }
 
@@ -171,6 +175,7 @@ fn report(
             stress1: map.stress1,
             iterations: map.iterations as u64,
             converged: map.converged,
+            distances: map.distances.clone(),
         })
         .collect();
     let pairs: u64 = components.iter().map(|component| component.pairs).sum();

@@ -5,6 +5,7 @@ mod warnings;
 
 use serde::{Deserialize, Serialize};
 
+use crate::DistanceReport;
 pub(crate) use warnings::warnings;
 
 /// A finding that a reader of the map should know of.
@@ -35,6 +36,9 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
+    /// Frequencies and distances; none of the classical method and of a lone landmark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distances: Option<DistanceReport>,
 }
 
 /// What was read, what was built, and how good it is.
