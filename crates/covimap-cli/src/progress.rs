@@ -190,6 +190,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
         Stage::Polish => "polish",
+        Stage::Distances => "distances",
         Stage::Refine => "refine",
         Stage::Classical => "classical",
     }
@@ -204,7 +205,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Count => "landmarks",
         Stage::Regions | Stage::LocalMaps => "regions",
         Stage::Refine => "iterations at most",
-        Stage::Stitch | Stage::Polish | Stage::Classical => "steps",
+        Stage::Stitch | Stage::Polish | Stage::Distances | Stage::Classical => "steps",
     }
 }
 

@@ -3,12 +3,9 @@
 use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
 use rayon::prelude::*;
 
-use crate::distances::{Alternated, DistanceReport, Distances};
+use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
-use crate::{
-    AutoParams, CoVisibility, LinkGraph, MapError, Observer, RegionCover, SightingLog, Stage, local_map,
-    stitch,
-};
+use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -25,10 +22,10 @@ pub(crate) struct ComponentMap {
 
 /// What is known of a connected component besides its links.
 pub(crate) struct Evidence<'a> {
-    pub log: &'a SightingLog,
     pub counts: &'a CoVisibility,
-    /// What the log calls landmark `k` of the component, ascending.
+    /// What the counts call landmark `k` of the component, ascending.
     pub members: &'a [u32],
+    pub steps: &'a ComponentSteps<'a>,
     pub sets: &'a SeenSets,
 }
 
@@ -73,11 +70,12 @@ pub(crate) fn map_component(
     observer.finished(Stage::Polish);
 
     stage(Stage::Distances, None)?;
-    let distances = Distances::new(graph, evidence.counts, evidence.log, evidence.members, seed);
-    let mut polished =
-        distances.alternate(Alternated::fixed(polished, pairs), params.distance, |pairs, start| {
-            polish(pairs, start, params, observer)
-        })?;
+    let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
+    let mut polished = Alternated::fixed(polished, pairs);
+    if let Some(distances) = &distances {
+        let polish = |pairs: &_, start: &_| polish(pairs, start, params, observer);
+        polished = distances.alternate(polished, params.distance, polish)?;
+    }
     observer.finished(Stage::Distances);
 
     let start = std::mem::take(&mut polished.embedding.points);
@@ -93,7 +91,7 @@ pub(crate) fn map_component(
         stress1: stress1(&polished.pairs, &points),
         iterations: polished.embedding.iterations,
         converged: polished.embedding.termination == Termination::Converged,
-        distances: (!polished.pairs.pairs().is_empty()).then(|| distances.report(&polished, &points)),
+        distances: distances.map(|distances| distances.report(&polished, &points)),
         points,
         region: cover.core_of().to_vec(),
         regions: cover.regions().len(),

@@ -4,6 +4,7 @@ use covimap_embed::{PairDistances, Point, stress1};
 
 use crate::classical;
 use crate::component::{ComponentMap, Evidence, map_component, put_in_frame};
+use crate::distances::{ComponentSteps, Places};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
@@ -62,8 +63,10 @@ impl Mapper {
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
         let sets = SeenSets::by_component(log, components);
-        let map = |(members, sets): (&Vec<u32>, SeenSets)| {
-            let evidence = Evidence { log, counts, members, sets: &sets };
+        let places = Places::new(graph.landmarks(), components);
+        let steps = ComponentSteps::of_all(log, &places, components.len());
+        let map = |((members, sets), steps): ((&Vec<u32>, SeenSets), ComponentSteps)| {
+            let evidence = Evidence { counts, members, steps: &steps, sets: &sets };
             let MapperParams { auto, seed, .. } = &self.params;
             let mut map = if members.len() == graph.landmarks() {
                 map_component(graph, &evidence, auto, *seed, observer)?
@@ -73,7 +76,7 @@ impl Mapper {
             put_in_frame(&mut map.points);
             Ok(map)
         };
-        components.iter().zip(sets).map(map).collect()
+        components.iter().zip(sets).zip(steps).map(map).collect()
     }
 }
 

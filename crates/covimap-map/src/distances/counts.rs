@@ -4,7 +4,8 @@ use covimap_embed::Observation;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::{CoVisibility, LandmarkId, LinkGraph, SightingLog};
+use super::steps::ComponentSteps;
+use crate::{CoVisibility, LandmarkId, LinkGraph};
 
 /// Pairs of the sample, at most: enough for a curve of a few parameters.
 const SAMPLE: usize = 40_000;
@@ -60,8 +61,8 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// Draws links and counts them over the log, in one pass.
-    pub fn draw(graph: &LinkGraph, log: &SightingLog, members: &[u32], seed: u64) -> Self {
+    /// Draws links and counts them over the steps of their component, in one pass.
+    pub fn draw(graph: &LinkGraph, steps: &ComponentSteps, seed: u64) -> Self {
         let total = graph.link_count();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut links = rand::seq::index::sample(&mut rng, total, total.min(SAMPLE)).into_vec();
@@ -71,8 +72,14 @@ impl Sample {
             .flat_map(|i| graph.of(i).iter().filter(move |link| link.to > i).map(move |link| [i, link.to]));
         let ends: Vec<[u32; 2]> =
             all.enumerate().filter(|(k, _)| drawn.next_if_eq(k).is_some()).map(|(_, ends)| ends).collect();
-        let blocks = count_blocks(&ends, log, members);
+        let blocks = count_blocks(&ends, graph.landmarks(), steps);
         Self { links, ends, blocks }
+    }
+
+    /// A sample of pairs with these counts, whatever landmarks they are of.
+    #[cfg(test)]
+    pub fn of_blocks(blocks: Vec<[PairCount; BLOCKS]>) -> Self {
+        Self { links: (0..blocks.len()).collect(), ends: vec![[0, 1]; blocks.len()], blocks }
     }
 
     /// Number of pairs.
@@ -125,36 +132,34 @@ impl Sample {
 }
 
 /// Counts of every pair in every block. `O(sightings * pairs a landmark)`.
-fn count_blocks(ends: &[[u32; 2]], log: &SightingLog, members: &[u32]) -> Vec<[PairCount; BLOCKS]> {
-    let landmarks = log.names().len();
-    // The pairs of each landmark, by its name in the log, as first of the two.
-    let mut starts = vec![0; landmarks + 1];
-    for [i, _] in ends {
-        starts[members[*i as usize] as usize + 1] += 1;
-    }
-    for k in 0..landmarks {
-        starts[k + 1] += starts[k];
-    }
+fn count_blocks(ends: &[[u32; 2]], landmarks: usize, steps: &ComponentSteps) -> Vec<[PairCount; BLOCKS]> {
+    // Where the pairs of each first landmark begin.
+    let starts: Vec<usize> =
+        (0..=landmarks).map(|i| ends.partition_point(|pair| (pair[0] as usize) < i)).collect();
     let mut sightings = vec![[0_u32; BLOCKS]; landmarks];
     let mut together = vec![[0_u32; BLOCKS]; ends.len()];
     let mut last_seen = vec![usize::MAX; landmarks];
-    for (step, seen) in log.iter().enumerate() {
-        let block = step * BLOCKS / log.steps();
-        for &landmark in seen {
+    let mut seen = Vec::new();
+    for step in 0..steps.len() {
+        let block = step * BLOCKS / steps.len();
+        steps.read(step, &mut seen);
+        for &landmark in &seen {
             last_seen[landmark as usize] = step;
             sightings[landmark as usize][block] += 1;
         }
-        for &landmark in seen {
+        for &landmark in &seen {
             for pair in starts[landmark as usize]..starts[landmark as usize + 1] {
-                if last_seen[members[ends[pair][1] as usize] as usize] == step {
-                    together[pair][block] += 1;
-                }
+                let both = last_seen[ends[pair][1] as usize] == step;
+                together[pair][block] += u32::from(both);
             }
         }
     }
     let count = |(ends, together): (&[u32; 2], &[u32; BLOCKS])| {
-        let [a, b] = ends.map(|end| &sightings[members[end as usize] as usize]);
+        let [a, b] = ends.map(|end| &sightings[end as usize]);
         std::array::from_fn(|k| PairCount { together: together[k], either: a[k] + b[k] - together[k] })
     };
     ends.iter().zip(&together).map(count).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -20,8 +20,9 @@
 //! One pass over the log to count 40 000 sampled links, `O(links)` a round, and the polish.
 //!
 //! # Failure
-//! A component with fewer than three links a landmark, or whose landmarks are seen together in only
-//! one half of the time, keeps the logarithm and says so in the report.
+//! A component with fewer than three links a landmark has no report and keeps the logarithm. So does
+//! one whose landmarks are seen together in only one half of the time; its report says that nothing
+//! was learnt.
 //!
 //! # References
 //! F. W. Young, "Quantitative analysis of qualitative data", Psychometrika 46, 1981.
@@ -29,6 +30,7 @@
 mod choice;
 mod counts;
 mod shepard;
+mod steps;
 mod weights;
 
 use covimap_embed::{
@@ -40,11 +42,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::links::ALPHA;
 use crate::params::DistanceChoice;
-use crate::{CoVisibility, LinkGraph, MapError, SightingLog};
+use crate::{CoVisibility, LinkGraph, MapError};
 pub use choice::FamilyScore;
 use choice::choose;
 use counts::{PairCount, Sample};
 pub use shepard::ShepardRow;
+pub(crate) use steps::{ComponentSteps, Places};
 use weights::Trust;
 
 /// Rounds of fitting and polishing: more move the map by less than the noise of the counts.
@@ -100,17 +103,21 @@ pub(crate) struct Alternated {
 }
 
 impl<'a> Distances<'a> {
-    /// Counts the links of a component; `members[k]` is what the log calls landmark `k` of its graph.
+    /// Counts the links of a component; `members[k]` is what the counts call landmark `k` of its graph.
+    /// `None` if there are too few of them to learn from.
     pub fn new(
         graph: &'a LinkGraph,
         counts: &CoVisibility,
-        log: &SightingLog,
         members: &[u32],
+        steps: &ComponentSteps,
         seed: u64,
-    ) -> Self {
-        let sample = Sample::draw(graph, log, members, seed);
+    ) -> Option<Self> {
+        if graph.link_count() < LINKS_A_LANDMARK * graph.landmarks() {
+            return None;
+        }
+        let sample = Sample::draw(graph, steps, seed);
         let repetition = sample.repetition();
-        Self { graph, counts: counts::of_links(graph, counts, members), sample, repetition }
+        Some(Self { graph, counts: counts::of_links(graph, counts, members), sample, repetition })
     }
 
     /// Alternates fit and polish, starting from the map of the fixed logarithm.
@@ -126,9 +133,6 @@ impl<'a> Distances<'a> {
             DistanceChoice::Family(family) => vec![family],
         };
         let mut state = start;
-        if self.counts.len() < LINKS_A_LANDMARK * self.graph.landmarks() {
-            return Ok(state);
-        }
         for _ in 0..ROUNDS {
             let points = &state.embedding.points;
             let chosen = choose(&families, &self.sample, &self.sampled_lengths(points), self.repetition);

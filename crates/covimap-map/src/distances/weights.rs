@@ -24,7 +24,7 @@ const FROM_MEDIAN: f64 = 1.4826;
 /// Deviations, in standard ones, at which a long distance keeps a quarter of its weight.
 const DOUBTED: f64 = 3.0;
 /// Least share of its weight that a doubted distance keeps: it still holds the map together.
-const KEPT: f64 = 0.01;
+pub(super) const KEPT: f64 = 0.01;
 /// The misfit of the curve is sought among so many values, each 0.7 times the one before.
 const MISFITS: i32 = 24;
 

@@ -168,7 +168,8 @@ impl Observer for Diary {
 
 #[test]
 fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
-    let auto = [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Refine];
+    let auto =
+        [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Distances, Stage::Refine];
     for (method, stages) in [(Method::Auto, &auto[..]), (Method::Classical, &[Stage::Classical])] {
         let diary = Diary::default();
         mapper(method).build(&two_halls(), &diary).unwrap();
@@ -182,7 +183,15 @@ fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
 
 #[test]
 fn a_build_stops_in_any_stage() {
-    let auto = [Stage::Count, Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Refine];
+    let auto = [
+        Stage::Count,
+        Stage::Regions,
+        Stage::LocalMaps,
+        Stage::Stitch,
+        Stage::Polish,
+        Stage::Distances,
+        Stage::Refine,
+    ];
     let stages = auto.map(|stage| (Method::Auto, stage));
     for (method, stage) in stages.into_iter().chain([(Method::Classical, Stage::Classical)]) {
         let diary = Diary { stop_at: Some(stage), ..Diary::default() };

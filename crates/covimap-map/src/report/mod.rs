@@ -36,7 +36,8 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
-    /// Frequencies and distances; none of the classical method and of a lone landmark.
+    /// Frequencies and distances; none of the classical method, and of components with fewer than
+    /// three pairs a landmark.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distances: Option<DistanceReport>,
 }
