@@ -36,7 +36,8 @@
 //! Observations of a single distance determine no curve: [`EmbedError::NoRange`].
 //!
 //! # References
-//! T. Yairi, K. Hori, "CoviMap", IJCAI 2003, eqs. (9) and (10), for log and inverse;
+//! T. Yairi, K. Hori, K. Hirama, "Qualitative map learning based on co-visibility of objects" (the CoviMap paper), eqs. (9) and (10), for
+//! inverse and log;
 //! J. O. Ramsay, "Monotone regression splines in action", Statistical Science 3(4), 1988.
 
 mod fit;

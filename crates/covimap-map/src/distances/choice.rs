@@ -18,8 +18,10 @@ pub struct FamilyScore {
     pub held_out: f64,
 }
 
-/// The curve of the family with the best score, and the scores; `None` where no family can be
-/// fitted.
+/// The curve of the family with the best score, and the scores.
+///
+/// `None` where no family can be fitted, or where pairs that one half of the time links are hardly
+/// ever together in the other, less than once in the mean: such links are chance.
 pub(super) fn choose(
     families: &[DistanceFamily],
     sample: &Sample,
@@ -27,13 +29,18 @@ pub(super) fn choose(
     repetition: f64,
 ) -> Option<(DistanceCurve, Vec<FamilyScore>)> {
     let halves = [false, true].map(|odd| sample.half(distances, odd));
+    let observations = halves.concat();
+    let together: f64 = observations.iter().map(|observation| observation.together).sum();
+    if together < observations.len() as f64 {
+        return None;
+    }
     let scores: Vec<FamilyScore> = families
         .iter()
         .filter_map(|&family| Some(FamilyScore { family, held_out: held_out(family, &halves)? / repetition }))
         .collect();
     let best = scores.iter().map(|score| score.held_out).fold(f64::NEG_INFINITY, f64::max);
     let simplest = scores.iter().find(|score| score.held_out >= best - CLEARLY)?;
-    let curve = simplest.family.fit(&halves.concat()).ok()?;
+    let curve = simplest.family.fit(&observations).ok()?;
     Some((curve, scores))
 }
 

@@ -20,9 +20,9 @@
 //! One pass over the log to count 40 000 sampled links, `O(links)` a round, and the polish.
 //!
 //! # Failure
-//! A component with fewer than three links a landmark has no report and keeps the logarithm. So does
-//! one whose landmarks are seen together in only one half of the time; its report says that nothing
-//! was learnt.
+//! A component with fewer than three links a landmark has no report and keeps the logarithm. So does one
+//! whose landmarks are not seen together in both halves of the time, or all equally often; its report
+//! says that nothing was learnt.
 //!
 //! # References
 //! F. W. Young, "Quantitative analysis of qualitative data", Psychometrika 46, 1981.
@@ -136,7 +136,7 @@ impl<'a> Distances<'a> {
         for _ in 0..ROUNDS {
             let points = &state.embedding.points;
             let chosen = choose(&families, &self.sample, &self.sampled_lengths(points), self.repetition);
-            let Some((curve, scores)) = chosen else { break };
+            let Some((curve, scores)) = chosen.filter(|(curve, _)| self.has_extent(curve)) else { break };
             let (pairs, fit) = self.measure(curve, scores, &state);
             let embedding = polish(&pairs, points)?;
             state = Alternated { embedding, pairs, fit: Some(fit) };
@@ -167,6 +167,12 @@ impl<'a> Distances<'a> {
         (pairs, Fit { curve: curve.scaled(stretch), scores, misfit: stretch * trust.misfit, doubted })
     }
 
+    /// Whether most links have a length under a curve. They have none where all frequencies are about equal.
+    fn has_extent(&self, curve: &DistanceCurve) -> bool {
+        let lengths = self.sample.links.iter().map(|&link| curve.distance(self.counts[link].frequency()));
+        2 * lengths.filter(|length| *length > 0.0).count() > self.sample.len()
+    }
+
     /// Factor that gives the distances of a curve the size of those of the fixed logarithm.
     fn stretch(&self, curve: &DistanceCurve) -> f64 {
         let fixed = fixed_log();
@@ -176,7 +182,7 @@ impl<'a> Distances<'a> {
             wanted += weight * fixed.distance(count.frequency()).powi(2);
             found += weight * curve.distance(count.frequency()).powi(2);
         }
-        if found > 0.0 { (wanted / found).sqrt() } else { 1.0 }
+        (wanted / found).sqrt()
     }
 
     /// The report on the finished map.

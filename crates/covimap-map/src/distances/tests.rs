@@ -57,11 +57,9 @@ fn the_family_that_made_the_counts_is_chosen() {
 }
 
 #[test]
-fn no_family_fits_what_was_never_seen_together_twice() {
-    let once = |k: usize| std::array::from_fn(|b| PairCount { together: u32::from(b == k % 16), either: 4 });
-    let sample = Sample::of_blocks((0..40).map(once).collect());
-    let distances: Vec<f64> = (0..40).map(|k| 0.1 * f64::from(k)).collect();
-    assert!(choose(&DistanceFamily::ALL, &sample, &distances, 1.0).is_some());
+fn no_family_fits_equal_distances_or_no_pairs() {
+    let blocks = [PairCount { together: 1, either: 4 }; 16];
+    let sample = Sample::of_blocks(vec![blocks; 40]);
     let equal = vec![1.0; 40];
     assert!(choose(&DistanceFamily::ALL, &sample, &equal, 1.0).is_none());
     assert!(choose(&DistanceFamily::ALL, &Sample::of_blocks(Vec::new()), &[], 1.0).is_none());
@@ -82,7 +80,17 @@ fn weights_are_worked_by_hand() {
     assert_eq!(trust.weight(&curve, count, phi + 5.0).1, 1.0);
     let sigma = 0.021_115_03_f64.sqrt();
     assert!((trust.weight(&curve, count, phi - 3.0 * sigma).1 - 0.25).abs() < 1e-5);
-    assert_eq!(trust.weight(&curve, count, phi - 1.1).1, weights::KEPT);
+    let strict = Trust { usual: 0.5, ..trust };
+    assert_eq!(strict.weight(&curve, count, phi - 1.1).1, weights::KEPT);
+}
+
+#[test]
+fn a_frequency_above_that_of_no_distance_is_not_a_certainty() {
+    let curve = DistanceCurve::Log(StretchedExponential { nearest: 0.3, length: 1.0, exponent: 2.0 });
+    let trust = Trust { repetition: 1.0, misfit: 0.0, usual: 1.0 };
+    let weight = |together| trust.weight(&curve, PairCount { together, either: 49 }, 0.5).0;
+    // Hardly more than that of f = 0.25, where the curve is steep.
+    assert!(weight(40) < 10.0 * weight(12), "{} {}", weight(40), weight(12));
 }
 
 #[test]
@@ -165,10 +173,11 @@ fn logs_that_teach_nothing_keep_the_logarithm() {
     // Too few links.
     let map = build(&SightingLog::from_steps([["A", "B"], ["B", "C"]]), DistanceChoice::Auto);
     assert_eq!(map.report().components[0].distances, None);
-    // Every two of eight landmarks together as often as any other two: all frequencies are equal.
+    // Every two of eight landmarks together once: no pair is together in both halves of the time.
     let pairs = || (0..8).flat_map(|i| (0..i).map(move |j| [i.to_string(), j.to_string()]));
     let map = build(&SightingLog::from_steps(pairs()), DistanceChoice::Auto);
     assert!(!report(&map).learnt);
+    // As often as any other two: all frequencies are equal.
     let again = SightingLog::from_steps((0..6).flat_map(|_| pairs()));
     let map = build(&again, DistanceChoice::Auto);
     assert!(map.landmarks().iter().all(|landmark| landmark.position.iter().all(|c| c.is_finite())));

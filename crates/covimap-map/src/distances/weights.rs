@@ -78,8 +78,9 @@ impl Trust {
     fn variance(&self, curve: &DistanceCurve, count: PairCount) -> f64 {
         let f = count.frequency();
         let error = (self.repetition * f * (1.0 - f) / (f64::from(count.either) + 1.0)).sqrt();
-        // No further than half of the way to 0 or 1.
-        let (less, more) = ((f - error).max(f / 2.0), (f + error).min((1.0 + f) / 2.0));
+        // No further than half of the way to 0 or 1. Above g(0) the distance is 0, but not certainly so.
+        let lower = f.min(curve.frequency(0.0));
+        let (less, more) = ((lower - error).max(lower / 2.0), (f + error).min((1.0 + f) / 2.0));
         ((curve.distance(less) - curve.distance(more)) / 2.0).powi(2)
     }
 
