@@ -200,6 +200,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
         Stage::Polish => "polish",
+        Stage::Distances => "distances",
         Stage::Refine => "refine",
         Stage::Classical => "classical",
         Stage::Sensor => "sensor",
@@ -217,7 +218,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Refine => "iterations at most",
         Stage::Sensor => "components",
         Stage::Polish => "steps at most",
-        Stage::Stitch | Stage::Classical => "steps",
+        Stage::Stitch | Stage::Distances | Stage::Classical => "steps",
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod classical;
 mod closure;
+mod distance_function;
 mod distance_rows;
 mod distances;
 mod eigen;
@@ -27,6 +28,10 @@ mod stress;
 mod synchronise;
 
 pub use classical::{ClassicalScaling, classical_scaling};
+pub use distance_function::{
+    DistanceCurve, DistanceFamily, DistanceFunction, InverseSquare, Lens, Observation, StretchedExponential,
+    Tabulated,
+};
 pub use distance_rows::{DistanceRows, ShortestPaths};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;

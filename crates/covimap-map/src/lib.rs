@@ -4,6 +4,7 @@ mod classical;
 mod component;
 mod covisibility;
 mod delaunay;
+mod distances;
 mod error;
 pub mod evaluate;
 pub mod export;
@@ -31,6 +32,7 @@ mod truth;
 pub use classical::{CLASSICAL_LIMIT, squared_distances};
 pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
+pub use distances::{DistanceReport, FamilyScore, ShepardRow};
 pub use error::MapError;
 pub use global_map::{GlobalMap, PlacedLandmark};
 pub use honesty::{HonestLinks, HonestyReport};
@@ -39,7 +41,9 @@ pub use links::{Link, LinkGraph};
 pub use local_map::LocalMap;
 pub use mapper::Mapper;
 pub use memory::MemoryEstimate;
-pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionParams, StopParams};
+pub use params::{
+    AutoParams, ClassicalParams, DistanceChoice, MapperParams, Method, Phi, RegionParams, StopParams,
+};
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};

@@ -3,7 +3,8 @@
 use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 
 use crate::classical;
-use crate::component::{ComponentMap, map_component, put_in_frame, settle};
+use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
+use crate::distances::{ComponentSteps, Places};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::sensing;
@@ -82,7 +83,11 @@ impl Mapper {
         let components = graph.components();
         let sets = SeenSets::by_component(log, &components);
         let maps: Vec<ComponentMap> = match self.params.method {
-            Method::Auto => self.auto_components(&sets, &graph, &components, start, observer)?,
+            Method::Auto => {
+                let known =
+                    Known { log, counts: &counts, graph: &graph, components: &components, sets: &sets };
+                self.auto_components(&known, start, observer)?
+            }
             Method::Classical => components
                 .iter()
                 .map(|members| {
@@ -103,31 +108,43 @@ impl Mapper {
 
     fn auto_components(
         &self,
-        sets: &[SeenSets],
-        graph: &LinkGraph,
-        components: &[Vec<u32>],
+        known: &Known,
         start: Option<&[Point]>,
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
-        let params = &self.params.auto;
-        let map_one = |graph: &LinkGraph, members: &[u32], sets: &SeenSets| match start {
-            None => map_component(graph, sets, params, observer),
+        let Known { log, counts, graph, components, sets } = *known;
+        let MapperParams { auto, seed, .. } = &self.params;
+        let places = Places::new(graph.landmarks(), components);
+        let steps = ComponentSteps::of_all(log, &places, components.len());
+        let map_one = |graph: &LinkGraph, evidence: &Evidence| match start {
+            None => map_component(graph, evidence, auto, *seed, observer),
             Some(all) => {
-                let own: Vec<Point> = members.iter().map(|&member| all[member as usize]).collect();
-                settle(graph, sets, &in_map_units(graph, own)?, params, observer)
+                let own: Vec<Point> = evidence.members.iter().map(|&member| all[member as usize]).collect();
+                settle(graph, evidence, &in_map_units(graph, own)?, auto, *seed, observer)
             }
         };
-        let map = |(members, sets): (&Vec<u32>, &SeenSets)| {
+        let map = |((members, sets), steps): ((&Vec<u32>, &SeenSets), ComponentSteps)| {
+            let evidence = Evidence { counts, members, steps: &steps, sets };
             let mut map = if members.len() == graph.landmarks() {
-                map_one(graph, members, sets)?
+                map_one(graph, &evidence)?
             } else {
-                map_one(&graph.restricted_to(members), members, sets)?
+                map_one(&graph.restricted_to(members), &evidence)?
             };
             put_in_frame(&mut map.points);
             Ok(map)
         };
-        components.iter().zip(sets).map(map).collect()
+        components.iter().zip(sets).zip(steps).map(map).collect()
     }
+}
+
+/// A log with what was counted of it.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    log: &'a SightingLog,
+    counts: &'a CoVisibility,
+    graph: &'a LinkGraph,
+    components: &'a [Vec<u32>],
+    sets: &'a [SeenSets],
 }
 
 /// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
@@ -195,6 +212,7 @@ fn classical_component(
         regions: 1,
         iterations: 0,
         converged: true,
+        distances: None,
     })
 }
 
@@ -254,6 +272,7 @@ fn report(
             stress1: map.stress1,
             iterations: map.iterations as u64,
             converged: map.converged,
+            distances: map.distances.clone(),
         })
         .collect();
     let pairs: u64 = components.iter().map(|component| component.pairs).sum();

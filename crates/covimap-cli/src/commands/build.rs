@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ValueEnum;
+use covimap_embed::DistanceFamily;
 use covimap_map::{
-    GlobalMap, LogFormat, Mapper, MapperParams, MemoryEstimate, Method, Phi, SightingLog, Stage,
-    output::Output,
+    DistanceChoice, GlobalMap, LogFormat, Mapper, MapperParams, MemoryEstimate, Method, Phi, SightingLog,
+    Stage, output::Output,
 };
 
 use crate::console::{self, Console};
@@ -43,6 +44,9 @@ struct Settings {
     /// Seed of every random choice
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
+    /// Auto only: distance function, fitted to the log [default: auto, the family that foretells it best]
+    #[arg(long, value_enum, value_name = "FAMILY")]
+    distance: Option<DistanceName>,
     /// Classical only: distance function [default: phi2]
     #[arg(long, value_enum, value_name = "PHI")]
     phi: Option<PhiName>,
@@ -66,6 +70,41 @@ enum MethodName {
     Auto,
     /// The CoviMap paper to the letter: dense, for small logs and comparison
     Classical,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum DistanceName {
+    /// The family that foretells held-out counts best
+    Auto,
+    /// sqrt(-0.3 ln f), not fitted
+    FixedLog,
+    /// f = f0 exp(-(d/a)^2)
+    Log,
+    /// 1/f = 1/f0 + (d/a)^2
+    Inverse,
+    /// A sensor with a sharp range
+    Lens,
+    /// f = f0 exp(-(d/a)^c)
+    Power,
+    /// A rising spline for -ln f
+    Spline,
+    /// Any falling curve
+    Isotonic,
+}
+
+impl From<DistanceName> for DistanceChoice {
+    fn from(name: DistanceName) -> Self {
+        match name {
+            DistanceName::Auto => Self::Auto,
+            DistanceName::FixedLog => Self::FixedLog,
+            DistanceName::Log => Self::Family(DistanceFamily::Log),
+            DistanceName::Inverse => Self::Family(DistanceFamily::Inverse),
+            DistanceName::Lens => Self::Family(DistanceFamily::Lens),
+            DistanceName::Power => Self::Family(DistanceFamily::Power),
+            DistanceName::Spline => Self::Family(DistanceFamily::Spline),
+            DistanceName::Isotonic => Self::Family(DistanceFamily::Isotonic),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -136,6 +175,10 @@ impl Settings {
                 "{flag} is a setting of --method classical; add that or leave {flag} out"
             )));
         }
+        if params.method != Method::Auto && self.distance.is_some() {
+            return Err(conflict("--distance is a setting of --method auto; leave one of the two out"));
+        }
+        params.auto.distance = self.distance.map_or(params.auto.distance, DistanceChoice::from);
         let classical = &mut params.classical;
         classical.alpha = self.alpha;
         classical.lo = self.lo.unwrap_or(classical.lo);

@@ -129,6 +129,25 @@ fn every_setting_of_the_classical_method_reaches_the_map() {
 }
 
 #[test]
+fn every_distance_function_reaches_the_map() {
+    let scratch = Scratch::new();
+    scratch.file("robot.jsonl", robot_log());
+    let distances = |options: &[&str]| {
+        let map = scratch.succeeds(&[&["build", "robot.jsonl", "-o", "-", "-q"], options].concat()).json();
+        (map["settings"]["auto"]["distance"].clone(), map["report"]["components"][0]["distances"].clone())
+    };
+    for family in ["log", "inverse", "lens", "power", "spline", "isotonic"] {
+        let (setting, report) = distances(&["--distance", family]);
+        assert_eq!(setting, family);
+        assert_eq!((&report["curve"]["family"], &report["learnt"]), (&family.into(), &true.into()));
+    }
+    let (setting, report) = distances(&["--distance", "fixed-log"]);
+    assert_eq!((setting, &report["learnt"]), ("fixed_log".into(), &false.into()));
+    assert_eq!(distances(&["--distance", "auto"]), distances(&[]));
+    assert_eq!(distances(&[]).1["scores"].as_array().unwrap().len(), 6);
+}
+
+#[test]
 fn warnings_name_landmarks() {
     let scratch = Scratch::new();
     scratch.file("log.txt", "A B C D\nB C D\nC D\nA B\nA D\nD E\n");

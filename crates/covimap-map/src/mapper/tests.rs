@@ -168,7 +168,8 @@ impl Observer for Diary {
 
 #[test]
 fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
-    let auto = [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Refine];
+    let auto =
+        [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Distances, Stage::Refine];
     for (method, stages) in [(Method::Auto, &auto[..]), (Method::Classical, &[Stage::Classical])] {
         let diary = Diary::default();
         mapper(method).build(&two_halls(), &diary).unwrap();
@@ -188,6 +189,7 @@ fn a_build_stops_in_any_stage() {
         Stage::LocalMaps,
         Stage::Stitch,
         Stage::Polish,
+        Stage::Distances,
         Stage::Refine,
         Stage::Sensor,
     ];

@@ -5,6 +5,7 @@ mod warnings;
 
 use serde::{Deserialize, Serialize};
 
+use crate::DistanceReport;
 pub(crate) use warnings::warnings;
 
 use crate::HonestyReport;
@@ -37,6 +38,10 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
+    /// Frequencies and distances; none of the classical method, and of components with fewer than
+    /// three pairs a landmark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distances: Option<DistanceReport>,
 }
 
 /// What was read, what was built, and how good it is.

@@ -3,7 +3,15 @@ use crate::SightingLog;
 use crate::fixtures::counts_of;
 
 fn component(landmarks: u64, converged: bool) -> ComponentReport {
-    ComponentReport { landmarks, regions: 1, pairs: 1, stress1: 0.1, iterations: 1, converged }
+    ComponentReport {
+        landmarks,
+        regions: 1,
+        pairs: 1,
+        stress1: 0.1,
+        iterations: 1,
+        converged,
+        distances: None,
+    }
 }
 
 /// Kind, count and examples of the warnings about a log.
