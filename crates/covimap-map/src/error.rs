@@ -53,6 +53,14 @@ pub enum MapError {
         /// Format number that this build reads.
         known: u64,
     },
+    /// A binary map file that is not as it was written.
+    #[error("{file}: the map file is damaged, {what}; copy it again or build the map again")]
+    DamagedMap {
+        /// File as the user named it.
+        file: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// Parts of a map that contradict each other.
     #[error("{what}")]
     InvalidMap {

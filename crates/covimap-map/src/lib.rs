@@ -21,6 +21,7 @@ mod places;
 mod progress;
 mod regions;
 mod report;
+mod sight_lines;
 mod sightings;
 mod stitch;
 mod truth;
@@ -29,7 +30,7 @@ pub use classical::{CLASSICAL_LIMIT, squared_distances};
 pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
 pub use error::MapError;
-pub use global_map::{GlobalMap, PlacedLandmark};
+pub use global_map::{ChartFit, GlobalMap, PlacedLandmark};
 pub use landmarks::{LandmarkId, LandmarkNames};
 pub use links::{Link, LinkGraph};
 pub use local_map::LocalMap;
@@ -38,6 +39,7 @@ pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionP
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
+pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };

@@ -8,7 +8,7 @@ use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
-    MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
+    MapperParams, Method, Observer, PlacedLandmark, SightLines, SightingLog, Stage,
 };
 
 /// Builds maps with one set of checked parameters.
@@ -50,7 +50,9 @@ impl Mapper {
         };
         let report = report(&counts, &graph, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
-        GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)
+        let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
+        GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
+            .with_sight_lines(sight_lines)
     }
 
     fn auto_components(

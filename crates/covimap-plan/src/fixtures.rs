@@ -1,0 +1,1 @@
+//! Small maps, for unit tests.
