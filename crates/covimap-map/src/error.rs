@@ -61,6 +61,15 @@ pub enum MapError {
         /// What is wrong with it.
         what: String,
     },
+    /// A component without a road makes no route graph.
+    #[error(
+        "component {component} of the map has no line of sight, so there is no route in it; give another component, or \
+         build a map that holds none at all again from its log"
+    )]
+    NoRouteGraph {
+        /// The component.
+        component: u32,
+    },
     /// Parts of a map that contradict each other.
     #[error("{what}")]
     InvalidMap {

@@ -7,7 +7,7 @@ use covimap_map::{GlobalMap, LandmarkId, PlacedLandmark};
 use rayon::prelude::*;
 
 use crate::charts::{Chart, Near, charts};
-use crate::confidence::{Covariance, covariances};
+use crate::confidence::{Confidence, Covariance};
 use crate::delaunay::Neighbours;
 use crate::names::NameTable;
 use crate::{LandmarkRef, PlanError};
@@ -28,7 +28,7 @@ pub struct MapIndex {
     /// All landmarks, by region and number.
     by_region: Vec<LandmarkId>,
     neighbours: OnceLock<Neighbours>,
-    covariances: OnceLock<Vec<Covariance>>,
+    confidence: OnceLock<Confidence>,
 }
 
 impl MapIndex {
@@ -38,8 +38,8 @@ impl MapIndex {
         let (table, charts) = rayon::join(|| NameTable::new(map.names()), || charts(&map));
         let mut by_region: Vec<LandmarkId> = (0..map.len() as u32).map(LandmarkId).collect();
         by_region.sort_by_key(|id| map.landmarks()[id.index()].region);
-        let (neighbours, covariances) = (OnceLock::new(), OnceLock::new());
-        Self { map, table, charts, by_region, neighbours, covariances }
+        let (neighbours, confidence) = (OnceLock::new(), OnceLock::new());
+        Self { map, table, charts, by_region, neighbours, confidence }
     }
 
     /// The map behind the index.
@@ -184,7 +184,17 @@ impl MapIndex {
     }
 
     pub(crate) fn covariance_of(&self, id: LandmarkId) -> Covariance {
-        self.covariances.get_or_init(|| covariances(&self.map, &self.charts))[id.index()]
+        self.confidence().covariances[id.index()]
+    }
+
+    /// By how much variances grow between landmarks this far apart in a component of the map.
+    pub(crate) fn growth(&self, component: u32, apart: f64) -> f64 {
+        let chart = self.charts.partition_point(|chart| chart.component < component);
+        self.confidence().growth(chart, apart)
+    }
+
+    fn confidence(&self) -> &Confidence {
+        self.confidence.get_or_init(|| Confidence::new(&self.map, &self.charts))
     }
 
     /// Whether two landmarks are in one frame.

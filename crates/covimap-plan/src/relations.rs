@@ -8,10 +8,12 @@
 //! order the variance
 //!
 //! ```text
-//! v = g_a' C_a g_a + g_b' C_b g_b + g_c' C_c g_c,    g_a = J (c - b), g_b = J (a - c), g_c = J (b - a),
+//! v = (1 + L / 4 u) (g_a' C_a g_a + g_b' C_b g_b + g_c' C_c g_c),
+//! g_a = J (c - b), g_b = J (a - c), g_c = J (b - a),
 //! ```
 //!
-//! `J` being a quarter turn, and its sign is right with the probability `Phi(|s| / sqrt(v))`.
+//! `J` being a quarter turn and the first factor the bending of the map over the longest side L, `u` the
+//! length of a map unit. The sign of `s` is right with the probability `Phi(|s| / sqrt(v))`.
 //!
 //! **A map may be a mirror image**, in which left and right are exchanged all over, unless its
 //! handedness is known from outside ([`MapIndex::is_handed`]). Order around a place is then told in the
@@ -167,8 +169,10 @@ impl MapIndex {
         let [a, b, c] = ids.map(|id| self.placed(id).position);
         let area = doubled_area(a, b, c);
         let gradients = [(b, c), (c, a), (a, b)].map(|(p, q)| [p[1] - q[1], q[0] - p[0]]);
-        let variance: f64 =
+        let independent: f64 =
             ids.iter().zip(gradients).map(|(&id, gradient)| self.covariance_of(id).along(gradient)).sum();
+        let reach = gradients.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        let variance = independent * self.growth(self.placed(ids[0]).component, reach);
         Orientation {
             orientation: if area < 0.0 { Turn::Right } else { Turn::Left },
             probability: sign_is_right(area.abs(), variance),
