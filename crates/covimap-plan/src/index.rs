@@ -46,6 +46,11 @@ impl MapIndex {
         Ok(&self.map.landmarks()[self.id(landmark)?.index()])
     }
 
+    /// The number of a landmark, if the map has that ID.
+    pub(crate) fn lookup(&self, id: &str) -> Option<LandmarkId> {
+        self.table.find(self.map.names(), id)
+    }
+
     /// The string ID of a landmark of this map.
     #[must_use]
     pub fn name(&self, id: LandmarkId) -> &str {
