@@ -192,6 +192,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::Polish => "polish",
         Stage::Refine => "refine",
         Stage::Classical => "classical",
+        Stage::Sensor => "sensor",
     }
 }
 
@@ -204,6 +205,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Count => "landmarks",
         Stage::Regions | Stage::LocalMaps => "regions",
         Stage::Refine => "iterations at most",
+        Stage::Sensor => "components",
         Stage::Stitch | Stage::Polish | Stage::Classical => "steps",
     }
 }

@@ -5,7 +5,7 @@ use covimap_embed::Point;
 use rustc_hash::FxHashSet;
 use serde::{Deserialize, Serialize};
 
-use crate::{BuildReport, LandmarkNames, MapError, MapperParams, SightLines};
+use crate::{BuildReport, LandmarkNames, MapError, MapperParams, Sensing, SightLines};
 
 /// Where one landmark was placed, and on what evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +48,7 @@ pub struct GlobalMap {
     pub(crate) report: BuildReport,
     pub(crate) sight_lines: SightLines,
     pub(crate) alignment: Vec<ChartFit>,
+    pub(crate) sensing: Option<Sensing>,
 }
 
 impl GlobalMap {
@@ -81,7 +82,7 @@ impl GlobalMap {
             }
         }
         let (sight_lines, alignment) = (SightLines::default(), Vec::new());
-        Ok(Self { names, landmarks, params, report, sight_lines, alignment })
+        Ok(Self { names, landmarks, params, report, sight_lines, alignment, sensing: None })
     }
 
     /// The map with its lines of sight.
@@ -95,6 +96,7 @@ impl GlobalMap {
     }
 
     /// The map with other positions, in frames that `alignment` describes; one entry a component at most.
+    /// Lengths of the sensor model take the new scales.
     ///
     /// # Errors
     /// [`MapError::InvalidMap`] when there is not one position a landmark; [`MapError::NotFinite`] for
@@ -110,7 +112,32 @@ impl GlobalMap {
         for (placed, &position) in self.landmarks.iter_mut().zip(positions) {
             placed.position = position;
         }
+        let scale = |fits: &[ChartFit], component| {
+            fits.iter().find(|fit| fit.component == component).map_or(1.0, |fit| fit.scale)
+        };
+        let ratio = |component| scale(&alignment, component) / scale(&self.alignment, component);
+        self.sensing = self.sensing.take().map(|sensing| sensing.scaled(&self.landmarks, ratio));
         self.alignment = alignment;
+        Ok(self)
+    }
+
+    /// The map with what it knows of its sensor.
+    ///
+    /// # Errors
+    /// [`MapError::InvalidMap`] when that is of other landmarks or components than the map's.
+    pub fn with_sensing(mut self, sensing: Sensing) -> Result<Self, MapError> {
+        let components = self.landmarks.iter().map(|placed| placed.component as usize + 1).max().unwrap_or(0);
+        let (landmarks, sensors) = (sensing.landmarks(), sensing.sensors().len());
+        if landmarks != self.len() || sensors < components {
+            return Err(MapError::InvalidMap {
+                what: format!(
+                    "{landmarks} landmarks and {sensors} components have a sensor model, the map has {} and \
+                     {components}; build the map again",
+                    self.len()
+                ),
+            });
+        }
+        self.sensing = Some(sensing);
         Ok(self)
     }
 
@@ -136,6 +163,13 @@ impl GlobalMap {
     #[must_use]
     pub fn landmarks(&self) -> &[PlacedLandmark] {
         &self.landmarks
+    }
+
+    /// What the map knows of its sensor; `None` if no component has three landmarks, or the file was
+    /// written without.
+    #[must_use]
+    pub fn sensing(&self) -> Option<&Sensing> {
+        self.sensing.as_ref()
     }
 
     /// The settings that made it.
@@ -166,6 +200,7 @@ impl GlobalMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::SensorModel;
 
     #[test]
     fn parts_that_contradict_each_other_make_no_map() {
@@ -196,10 +231,21 @@ mod tests {
             let landmarks = vec![at([0.0; 2]), at([1.0; 2])];
             GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default()).unwrap()
         };
+        let sensor =
+            |length| SensorModel { range: length, edge: 0.1 * length, detectability: 0.9, outliers: 0.01 };
+        let sensing = |length| {
+            Sensing::from_parts(vec![sensor(length)], vec![0.9; 2], vec![0.25 * length; 2], &[]).unwrap()
+        };
         let fit = ChartFit { component: 0, scale: 2.0, anchors: 2, distances: 0, rmse: 0.0, handed: false };
         let moved = map().with_positions(&[[2.0; 2], [4.0; 2]], vec![fit.clone()]).unwrap();
         assert_eq!(moved.landmarks()[1], at([4.0; 2]));
-        assert_eq!(moved.alignment(), [fit]);
+        assert_eq!(moved.alignment(), std::slice::from_ref(&fit));
+        // Lengths of the sensor go with the scale, from what it was to what it is.
+        let sensed = map().with_sensing(sensing(0.5)).unwrap();
+        let twice = sensed.with_positions(&[[0.0; 2]; 2], vec![fit.clone()]).unwrap();
+        assert_eq!(twice.sensing(), Some(&sensing(1.0)));
+        let six = twice.with_positions(&[[0.0; 2]; 2], vec![ChartFit { scale: 12.0, ..fit }]).unwrap();
+        assert_eq!(six.sensing(), Some(&sensing(6.0)));
         let refusal =
             |positions: &[Point]| map().with_positions(positions, Vec::new()).unwrap_err().to_string();
         assert_eq!(refusal(&[[0.0; 2]]), "1 positions for 2 landmarks; give one each");

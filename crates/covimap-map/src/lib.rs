@@ -21,6 +21,7 @@ mod places;
 mod progress;
 mod regions;
 mod report;
+mod sensing;
 mod sight_lines;
 mod sightings;
 mod stitch;
@@ -39,6 +40,7 @@ pub use params::{AutoParams, ClassicalParams, MapperParams, Method, Phi, RegionP
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
+pub use sensing::{Sensing, SensorModel};
 pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,

@@ -16,6 +16,9 @@
 //! other landmark, counted from 0 in the order of the file, and the steps that show both. A row without
 //! any has no such key, and neither has an older file. A map in a frame known from outside has the key
 //! `alignment` ([`ChartFit`]) before `landmarks`.
+//! A map that knows its sensor has more: `detectability` and `deviation` of each landmark, and after
+//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001}]`, one a
+//! component, and `"occluded":[[0,12]]`, pairs of places in the list of landmarks; see [`Sensing`].
 //!
 //! A landmark takes a line, so that `diff` and `grep` work. The bytes depend on the map alone.
 //! Numbers have the fewest digits that read back as the same number: a map that is saved and
@@ -38,7 +41,7 @@ use serde_json::{Map, Value};
 
 use crate::{
     BuildReport, ChartFit, GlobalMap, LandmarkId, LandmarkNames, MapError, MapperParams, PlacedLandmark,
-    SightLines, output,
+    Sensing, SensorModel, SightLines, output,
 };
 
 mod binary;
@@ -63,6 +66,10 @@ struct Row<'a> {
     partners: u32,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     links: Vec<(u32, u32)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detectability: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deviation: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -74,6 +81,10 @@ struct Contents<'a> {
     alignment: Vec<ChartFit>,
     #[serde(borrow)]
     landmarks: Vec<Row<'a>>,
+    #[serde(default)]
+    sensors: Vec<SensorModel>,
+    #[serde(default)]
+    occluded: Vec<[u32; 2]>,
     report: BuildReport,
 }
 
@@ -116,6 +127,14 @@ impl GlobalMap {
         for number in (0..self.len() as u32).map(LandmarkId) {
             out.write_all(if number.0 == 0 { b"\n" } else { b",\n" })?;
             serde_json::to_writer(&mut out, &Row::new(self, number))?;
+        }
+        if let Some(sensing) = self.sensing() {
+            out.write_all(b"\n],\"sensors\":")?;
+            serde_json::to_writer(&mut out, sensing.sensors())?;
+            out.write_all(b",\"occluded\":[")?;
+            for (index, [a, b]) in sensing.occluded_pairs().enumerate() {
+                write!(out, "{}[{a},{b}]", if index == 0 { "" } else { "," })?;
+            }
         }
         out.write_all(b"\n],\"report\":")?;
         serde_json::to_writer(&mut out, self.report())?;
@@ -168,8 +187,15 @@ impl GlobalMap {
             landmarks.push(row.placed());
             links.extend(row.links.iter().map(|&(to, steps)| (number, LandmarkId(to), steps)));
         }
-        let head = Head { settings, report: contents.report, alignment: contents.alignment };
-        head.complete(names, landmarks, links).map_err(|error| in_file(error, file))
+        // A number that is missing is as bad as one out of its range.
+        let column = |of: fn(&Row) -> Option<f64>| {
+            contents.landmarks.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect()
+        };
+        let (detectability, deviation) = (column(|row| row.detectability), column(|row| row.deviation));
+        let parts = Parts { names, landmarks, detectability, deviation, links };
+        let Contents { report, alignment, sensors, occluded, .. } = contents;
+        let head = Head { settings, report, alignment, sensors, occluded };
+        head.complete(parts).map_err(|error| in_file(error, file))
     }
 }
 
@@ -179,21 +205,38 @@ struct Head {
     settings: Map<String, Value>,
     report: BuildReport,
     alignment: Vec<ChartFit>,
+    /// None if the map does not know its sensor.
+    sensors: Vec<SensorModel>,
+    occluded: Vec<[u32; 2]>,
+}
+
+/// What a map file says of the landmarks, in either form.
+struct Parts {
+    names: LandmarkNames,
+    landmarks: Vec<PlacedLandmark>,
+    /// Of no meaning without sensors, as is `deviation`.
+    detectability: Vec<f64>,
+    deviation: Vec<f64>,
+    links: Vec<(LandmarkId, LandmarkId, u32)>,
 }
 
 impl Head {
-    fn complete(
-        self,
-        names: LandmarkNames,
-        landmarks: Vec<PlacedLandmark>,
-        links: Vec<(LandmarkId, LandmarkId, u32)>,
-    ) -> Result<GlobalMap, MapError> {
+    fn complete(self, parts: Parts) -> Result<GlobalMap, MapError> {
         let params = known_settings(self.settings).map_err(|error| MapError::InvalidMap {
             what: format!("the settings cannot be read, {error}; build the map again"),
         })?;
+        let Parts { names, landmarks, detectability, deviation, links } = parts;
         let lines = SightLines::from_pairs(names.len(), links)?;
         let mut map =
             GlobalMap::from_parts(names, landmarks, params, self.report)?.with_sight_lines(lines)?;
+        if !self.sensors.is_empty() {
+            map = map.with_sensing(Sensing::from_parts(
+                self.sensors,
+                detectability,
+                deviation,
+                &self.occluded,
+            )?)?;
+        }
         map.alignment = self.alignment;
         Ok(map)
     }
@@ -212,7 +255,7 @@ impl<'a> Row<'a> {
         let PlacedLandmark { position: [x, y], component, region, sightings, partners } =
             map.landmarks()[number.index()];
         let later = map.sight_lines().of(number).iter().filter(|line| line.to > number);
-        let links = later.map(|line| (line.to.0, line.steps)).collect();
+        let sensing = map.sensing();
         Self {
             id: Cow::Borrowed(map.names().name(number)),
             x,
@@ -221,7 +264,9 @@ impl<'a> Row<'a> {
             region,
             sightings,
             partners,
-            links,
+            links: later.map(|line| (line.to.0, line.steps)).collect(),
+            detectability: sensing.map(|sensing| sensing.detectability(number)),
+            deviation: sensing.map(|sensing| sensing.deviation(number)),
         }
     }
 

@@ -6,6 +6,7 @@ use crate::classical;
 use crate::component::{ComponentMap, map_component, put_in_frame};
 use crate::places::SeenSets;
 use crate::report::warnings;
+use crate::sensing;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
     MapperParams, Method, Observer, PlacedLandmark, SightLines, SightingLog, Stage,
@@ -39,8 +40,9 @@ impl Mapper {
         check_information(&counts)?;
         let graph = LinkGraph::from_counts(&counts);
         let components = graph.components();
+        let sets = SeenSets::by_component(log, &components);
         let maps: Vec<ComponentMap> = match self.params.method {
-            Method::Auto => self.auto_components(log, &graph, &components, observer)?,
+            Method::Auto => self.auto_components(&sets, &graph, &components, observer)?,
             Method::Classical => components
                 .iter()
                 .map(|members| {
@@ -48,26 +50,31 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
+        let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
+        let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
         let report = report(&counts, &graph, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
         let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
-        GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
-            .with_sight_lines(sight_lines)
+        let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
+            .with_sight_lines(sight_lines)?;
+        match sensing {
+            Some(sensing) => map.with_sensing(sensing),
+            None => Ok(map),
+        }
     }
 
     fn auto_components(
         &self,
-        log: &SightingLog,
+        sets: &[SeenSets],
         graph: &LinkGraph,
         components: &[Vec<u32>],
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
-        let sets = SeenSets::by_component(log, components);
-        let map = |(members, sets): (&Vec<u32>, SeenSets)| {
+        let map = |(members, sets): (&Vec<u32>, &SeenSets)| {
             let mut map = if members.len() == graph.landmarks() {
-                map_component(graph, &sets, &self.params.auto, observer)?
+                map_component(graph, sets, &self.params.auto, observer)?
             } else {
-                map_component(&graph.restricted_to(members), &sets, &self.params.auto, observer)?
+                map_component(&graph.restricted_to(members), sets, &self.params.auto, observer)?
             };
             put_in_frame(&mut map.points);
             Ok(map)

@@ -19,6 +19,8 @@ pub enum Stage {
     Refine,
     /// The paper's dense scaling.
     Classical,
+    /// Learning the sensor that the finished map and the log imply; counted in components.
+    Sensor,
 }
 
 /// Is told how a build goes on. All methods may be called from several threads.

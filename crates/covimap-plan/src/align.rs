@@ -201,7 +201,7 @@ impl Evidence {
 fn anchors(index: &MapIndex, positions: Option<&Truth>) -> (Vec<(LandmarkId, Point)>, usize) {
     let Some(truth) = positions else { return (Vec::new(), 0) };
     let known = truth.names().iter().zip(truth.positions());
-    let found: Vec<_> = known.filter_map(|(name, &at)| index.find(name).map(|id| (id, at))).collect();
+    let found: Vec<_> = known.filter_map(|(name, &at)| index.lookup(name).map(|id| (id, at))).collect();
     let unknown = truth.names().len() - found.len();
     (found, unknown)
 }

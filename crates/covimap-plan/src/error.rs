@@ -149,6 +149,15 @@ pub enum PlanError {
     /// A map that could not be put together.
     #[error(transparent)]
     Map(#[from] MapError),
+    /// A map that does not know from where its landmarks are seen.
+    #[error(
+        "the map of {landmarks} landmarks does not know its sensor, so that no place can be told; build it again, from \
+         a log with three or more landmarks in one component"
+    )]
+    NoSensor {
+        /// Landmarks of the map.
+        landmarks: usize,
+    },
 }
 
 fn hint(nearest: &Option<String>) -> String {

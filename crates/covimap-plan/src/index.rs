@@ -216,7 +216,7 @@ impl MapIndex {
     }
 
     /// The landmark of that name, if there is one. `O(1)`.
-    pub(crate) fn find(&self, name: &str) -> Option<LandmarkId> {
+    pub(crate) fn lookup(&self, name: &str) -> Option<LandmarkId> {
         self.table.find(self.map.names(), name)
     }
 }

@@ -32,7 +32,7 @@ impl LandmarkRef for LandmarkId {
 
 impl LandmarkRef for str {
     fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError> {
-        index.find(self).ok_or_else(|| PlanError::UnknownLandmark {
+        index.lookup(self).ok_or_else(|| PlanError::UnknownLandmark {
             id: self.to_owned(),
             nearest: most_similar(index.map().names(), self).map(str::to_owned),
         })

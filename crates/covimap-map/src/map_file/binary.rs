@@ -6,11 +6,12 @@
 //! |---|---|
 //! | 8 | `covimap` and a zero byte |
 //! | 4 | format, 1 |
-//! | 8 + h | length h of the head, and the head: JSON of settings, report and alignment |
+//! | 8 + h | length h of the head, and the head: JSON of settings, report, alignment, sensors and occluded pairs |
 //! | 8, 8, 8 | n, m, and the length t of all IDs together |
 //! | 4 n, t | length of each ID, the IDs in UTF-8 |
 //! | 16 n | x and y, 64-bit floats |
 //! | 16 n | component, region, sightings, partners |
+//! | 16 n | detectability and deviation, 64-bit floats, unless the head has no sensors |
 //! | 12 m | number of the first landmark, of the second, and steps that show both |
 //! | 4 | CRC-32 of all bytes before |
 //!
@@ -18,8 +19,8 @@
 
 use std::io::{self, Write};
 
-use super::{FORMAT, Head, in_file, object};
-use crate::{GlobalMap, LandmarkId, LandmarkNames, MapError, PlacedLandmark};
+use super::{FORMAT, Head, Parts, in_file, object};
+use crate::{GlobalMap, LandmarkId, LandmarkNames, MapError, PlacedLandmark, Sensing};
 
 /// Ending of names of files in this form.
 pub(super) const BINARY_EXTENSION: &str = "covimap";
@@ -42,6 +43,8 @@ impl GlobalMap {
             settings: object(self.params())?,
             report: self.report().clone(),
             alignment: self.alignment().to_vec(),
+            sensors: self.sensing().map_or(Vec::new(), |sensing| sensing.sensors().to_vec()),
+            occluded: self.sensing().into_iter().flat_map(Sensing::occluded_pairs).collect(),
         })?;
         out.write_all(MAGIC)?;
         out.write_all(&(FORMAT as u32).to_le_bytes())?;
@@ -63,6 +66,12 @@ impl GlobalMap {
         for placed in self.landmarks() {
             for number in [placed.component, placed.region, placed.sightings, placed.partners] {
                 out.write_all(&number.to_le_bytes())?;
+            }
+        }
+        if let Some(sensing) = self.sensing() {
+            for id in (0..self.len() as u32).map(LandmarkId) {
+                out.write_all(&sensing.detectability(id).to_le_bytes())?;
+                out.write_all(&sensing.deviation(id).to_le_bytes())?;
             }
         }
         for number in self.sight_lines().pairs().flat_map(|(a, b, steps)| [a.0, b.0, steps]) {
@@ -91,8 +100,8 @@ impl GlobalMap {
             return Err(MapError::MapFormat { file: file.to_owned(), found, known: FORMAT });
         }
         check_sum(bytes).map_err(damaged)?;
-        let Contents { head, names, landmarks, links } = Contents::read(&mut rest).map_err(damaged)?;
-        head.complete(names, landmarks, links).map_err(|error| in_file(error, file))
+        let (head, parts) = contents(&mut rest).map_err(damaged)?;
+        head.complete(parts).map_err(|error| in_file(error, file))
     }
 }
 
@@ -103,43 +112,36 @@ fn check_sum(bytes: &[u8]) -> Result<(), String> {
     if found == told { Ok(()) } else { Err(what()) }
 }
 
-struct Contents {
-    head: Head,
-    names: LandmarkNames,
-    landmarks: Vec<PlacedLandmark>,
-    links: Vec<(LandmarkId, LandmarkId, u32)>,
-}
-
-impl Contents {
-    /// What stands between the format and the check sum.
-    fn read(rest: &mut Rest) -> Result<Self, String> {
-        let length = rest.size()?;
-        let head =
-            serde_json::from_slice(rest.take(length)?).map_err(|error| format!("its head, {error}"))?;
-        let [landmarks, lines, letters] = [rest.size()?, rest.size()?, rest.size()?];
-        let names = names(rest.numbers(landmarks)?, rest.take(letters)?)?;
-        let coordinates = rest.list(landmarks, |bytes: &[u8; 8]| f64::from_le_bytes(*bytes), 2)?;
-        let numbers = rest.list(landmarks, |bytes: &[u8; 4]| u32::from_le_bytes(*bytes), 4)?;
-        let landmarks = coordinates
-            .as_chunks()
-            .0
-            .iter()
-            .zip(numbers.as_chunks().0)
-            .map(|(&position, &[component, region, sightings, partners])| PlacedLandmark {
-                position,
-                component,
-                region,
-                sightings,
-                partners,
-            })
-            .collect();
-        let links = rest.list(lines, |bytes: &[u8; 4]| u32::from_le_bytes(*bytes), 3)?;
-        let links =
-            links.as_chunks().0.iter().map(|&[a, b, steps]| (LandmarkId(a), LandmarkId(b), steps)).collect();
-        match rest.0.len() {
-            4 => Ok(Self { head, names, landmarks, links }),
-            left => Err(format!("{left} bytes are left where 4 should be")),
-        }
+/// What stands between the format and the check sum.
+fn contents(rest: &mut Rest) -> Result<(Head, Parts), String> {
+    let length = rest.size()?;
+    let head: Head =
+        serde_json::from_slice(rest.take(length)?).map_err(|error| format!("its head, {error}"))?;
+    let [landmarks, lines, letters] = [rest.size()?, rest.size()?, rest.size()?];
+    let names = names(rest.numbers(landmarks)?, rest.take(letters)?)?;
+    let coordinates = rest.list(landmarks, f64::from_le_bytes, 2)?;
+    let numbers = rest.list(landmarks, u32::from_le_bytes, 4)?;
+    let placed = |(&position, &[component, region, sightings, partners]): (&_, &[u32; 4])| PlacedLandmark {
+        position,
+        component,
+        region,
+        sightings,
+        partners,
+    };
+    let sensed = if head.sensors.is_empty() { 0 } else { landmarks };
+    let sensing = rest.list(sensed, f64::from_le_bytes, 2)?;
+    let links = rest.list(lines, u32::from_le_bytes, 3)?;
+    let link = |&[a, b, steps]: &[u32; 3]| (LandmarkId(a), LandmarkId(b), steps);
+    let parts = Parts {
+        names,
+        landmarks: coordinates.as_chunks().0.iter().zip(numbers.as_chunks().0).map(placed).collect(),
+        detectability: sensing.iter().copied().step_by(2).collect(),
+        deviation: sensing.iter().copied().skip(1).step_by(2).collect(),
+        links: links.as_chunks().0.iter().map(link).collect(),
+    };
+    match rest.0.len() {
+        4 => Ok((head, parts)),
+        left => Err(format!("{left} bytes are left where 4 should be")),
     }
 }
 
@@ -170,15 +172,15 @@ impl<'a> Rest<'a> {
     fn list<const N: usize, T>(
         &mut self,
         count: usize,
-        value: impl Fn(&[u8; N]) -> T,
+        value: impl Fn([u8; N]) -> T,
         group: usize,
     ) -> Result<Vec<T>, String> {
         let length = count.checked_mul(N * group).ok_or("its sizes are beyond any memory")?;
-        Ok(self.take(length)?.as_chunks().0.iter().map(value).collect())
+        Ok(self.take(length)?.as_chunks().0.iter().copied().map(value).collect())
     }
 
     fn numbers(&mut self, count: usize) -> Result<Vec<u32>, String> {
-        self.list(count, |bytes: &[u8; 4]| u32::from_le_bytes(*bytes), 1)
+        self.list(count, u32::from_le_bytes, 1)
     }
 
     fn number(&mut self) -> Result<u32, String> {
@@ -186,7 +188,7 @@ impl<'a> Rest<'a> {
     }
 
     fn size(&mut self) -> Result<usize, String> {
-        let size = self.list(1, |bytes: &[u8; 8]| u64::from_le_bytes(*bytes), 1)?[0];
+        let size = self.list(1, u64::from_le_bytes, 1)?[0];
         usize::try_from(size).map_err(|_| "its sizes are beyond any memory".to_owned())
     }
 }

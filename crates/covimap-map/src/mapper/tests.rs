@@ -174,7 +174,7 @@ fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
         mapper(method).build(&two_halls(), &diary).unwrap();
         // Two components, and the landmark by itself, which is not refined.
         let lone: Vec<Stage> = stages.iter().copied().filter(|&stage| stage != Stage::Refine).collect();
-        let wanted = [&[Stage::Count], stages, stages, &lone].concat();
+        let wanted = [&[Stage::Count], stages, stages, &lone, &[Stage::Sensor]].concat();
         let wanted: Vec<_> = wanted.iter().flat_map(|&stage| [(stage, true), (stage, false)]).collect();
         assert_eq!(diary.told.into_inner().unwrap(), wanted, "{method:?}");
     }
@@ -182,7 +182,15 @@ fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
 
 #[test]
 fn a_build_stops_in_any_stage() {
-    let auto = [Stage::Count, Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Refine];
+    let auto = [
+        Stage::Count,
+        Stage::Regions,
+        Stage::LocalMaps,
+        Stage::Stitch,
+        Stage::Polish,
+        Stage::Refine,
+        Stage::Sensor,
+    ];
     let stages = auto.map(|stage| (Method::Auto, stage));
     for (method, stage) in stages.into_iter().chain([(Method::Classical, Stage::Classical)]) {
         let diary = Diary { stop_at: Some(stage), ..Diary::default() };

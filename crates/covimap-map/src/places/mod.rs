@@ -37,6 +37,7 @@
 //! J. Neyman, E. L. Scott, "Consistent estimates based on partially consistent observations",
 //! Econometrica 16, 1948.
 
+mod observe;
 mod posterior;
 mod scoring;
 mod sensor;
@@ -48,6 +49,7 @@ use covimap_embed::Point;
 use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
+pub(crate) use observe::observe;
 use posterior::{Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 pub(crate) use sensor::Sensor;
@@ -86,13 +88,7 @@ pub(crate) fn refine(
     iterations: usize,
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
-    let range = half_far_link(graph, &start);
-    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
-    let mut model = Model { detectability: Vec::new(), points: start, sensor };
-    for _ in 0..SENSOR_STEPS {
-        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
-        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
-    }
+    let mut model = fit_sensor(graph, sets, start);
     for _ in 0..iterations {
         let scores = landmark_scores(graph, sets, &model, observer)?;
         let moved = model.move_landmarks(&scores);
@@ -103,6 +99,18 @@ pub(crate) fn refine(
         }
     }
     Ok(model)
+}
+
+/// The sensor that fits these positions best; detectabilities are all the same so far.
+fn fit_sensor(graph: &LinkGraph, sets: &SeenSets, points: Vec<Point>) -> Model {
+    let range = half_far_link(graph, &points);
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
+    let mut model = Model { detectability: Vec::new(), points, sensor };
+    for _ in 0..SENSOR_STEPS {
+        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
+        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
+    }
+    model
 }
 
 impl Model {

@@ -5,6 +5,9 @@
 //! posterior weight `g` adds `g r D` to the score and `g D D' / (P (1 - P))` to the information.
 //! `D = -p v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
 //! detectability `p`.
+//!
+//! That information takes the places for known. What a log really says about a position is the sum
+//! over steps of `(sum_y g r D) (sum_y g r D)'`: a step that leaves its place open has a small score.
 
 use covimap_embed::Point;
 
@@ -23,6 +26,8 @@ pub(super) struct Scores {
     position: Point,
     /// Information of the position: xx, xy, yy.
     information: [f64; 3],
+    /// Observed information of the position, in which the places are unknown: xx, xy, yy.
+    observed: [f64; 3],
     detectability: f64,
     detectability_information: f64,
 }
@@ -60,6 +65,8 @@ impl ScoreBoard {
                 own.detectability += surprise * v;
                 own.detectability_information += information * v * v;
             }
+            let [gx, gy] = own.position;
+            own.observed = [gx * gx, gx * gy, gy * gy].map(|square| square / times);
             let sum = &mut self.scores[witness.landmark as usize];
             // Any step adds information on the detectability.
             if sum.detectability_information <= 0.0 {
@@ -84,6 +91,9 @@ impl Scores {
         for (sum, more) in self.information.iter_mut().zip(other.information) {
             *sum += more;
         }
+        for (sum, more) in self.observed.iter_mut().zip(other.observed) {
+            *sum += more;
+        }
         self.detectability += other.detectability;
         self.detectability_information += other.detectability_information;
     }
@@ -101,6 +111,16 @@ impl Scores {
         let step = [(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant];
         let length = step[0].hypot(step[1]);
         if length > longest { step.map(|c| c * longest / length) } else { step }
+    }
+
+    /// Standard deviation of a coordinate, both axes taken together, that the log leaves to the
+    /// position; `loosest` where it says nothing.
+    pub fn deviation(&self, loosest: f64) -> f64 {
+        let [xx, xy, yy] = self.observed;
+        let least = 1.0 / (loosest * loosest);
+        let (xx, yy) = (xx + least, yy + least);
+        // Half the trace of the inverse.
+        ((xx + yy) / (2.0 * (xx * yy - xy * xy))).sqrt()
     }
 
     /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.

@@ -41,6 +41,18 @@ impl SeenSets {
         sets
     }
 
+    /// At most about `most` of the sets, evenly spread; each stands for those left out after it.
+    pub fn sample(&self, most: usize) -> Self {
+        let stride = self.len().div_ceil(most.max(1)).max(1);
+        let mut sample = Self { starts: vec![0], seen: Vec::new(), times: Vec::new() };
+        for first in (0..self.len()).step_by(stride) {
+            sample.seen.extend_from_slice(self.seen(first));
+            sample.starts.push(sample.seen.len());
+            sample.times.push(self.times[first..self.len().min(first + stride)].iter().sum());
+        }
+        sample
+    }
+
     /// Number of different sets.
     pub fn len(&self) -> usize {
         self.times.len()
@@ -78,5 +90,17 @@ mod tests {
         assert_eq!((other.len(), other.seen(0), other.times(0)), (1, [0, 1].as_slice(), 1.0));
         assert_eq!((sets.seen(0), sets.times(0)), ([0, 1].as_slice(), 2.0));
         assert_eq!((sets.seen(1), sets.times(1)), ([0, 1, 2].as_slice(), 1.0));
+    }
+
+    #[test]
+    fn a_sample_stands_for_all_sets() {
+        let steps = (0..10).map(|i| vec![i.to_string(), "last".to_owned()]);
+        let sets = &SeenSets::by_component(&SightingLog::from_steps(steps), &[(0..11).collect()])[0];
+        let sample = sets.sample(4);
+        // Every third of ten: three sets for three each, the last for itself.
+        assert_eq!((sample.len(), sample.times(0), sample.times(3)), (4, 3.0, 1.0));
+        assert_eq!(sample.seen(1), sets.seen(3));
+        assert_eq!(sets.sample(10).len(), 10);
+        assert_eq!(sets.sample(0).len(), 1);
     }
 }
