@@ -120,8 +120,8 @@ struct Step {
 }
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
-struct NormalEquations {
-    matrix: LowerTriangle,
+pub(crate) struct NormalEquations {
+    pub matrix: LowerTriangle,
     /// First entry of the 2 x 2 block of each pair: columns `2i` and `2i + 1`, rows `2j`, `2j + 1`.
     block_of_pair: Vec<[usize; 2]>,
     /// One object of each component, tied down against shifts.
@@ -131,7 +131,7 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    fn new(pairs: &PairDistances) -> Self {
+    pub fn new(pairs: &PairDistances) -> Self {
         let n = pairs.objects();
         let (component, sizes) = components(n, pairs.pairs().iter().map(|pair| (pair.i, pair.j)));
         let mut tied = vec![false; n];
@@ -182,7 +182,7 @@ impl NormalEquations {
     }
 
     /// Fills the matrix and returns the gradient of half the stress.
-    fn assemble(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) -> Vec<f64> {
+    pub fn assemble(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) -> Vec<f64> {
         let n = points.len();
         let values = &mut self.matrix.values;
         let starts = &self.matrix.starts;

@@ -8,7 +8,7 @@
 //!   walk over them.
 //! - [`align()`]: the map in the frame and unit of known positions, distances or turns.
 //! - [`explain`]: what holds a landmark in its place, and what would help.
-//! - [`Localiser`]: where a robot is that sees these landmarks.
+//! - [`Localiser`]: where a robot is that sees these landmarks; [`Tracker`]: the same on the move.
 
 mod align;
 mod charts;
@@ -32,7 +32,7 @@ pub use confidence::Covariance;
 pub use error::PlanError;
 pub use explain::{Advice, Explanation, Hold, explain};
 pub use index::MapIndex;
-pub use localise::{Localiser, Location, Look, Mode};
+pub use localise::{Localiser, Location, Look, Mode, TrackParams, Tracker};
 pub use names::LandmarkRef;
 pub use relations::{Orientation, Turn};
 pub use roads::{Objective, RoadParams, Roads, Route, Waypoint};

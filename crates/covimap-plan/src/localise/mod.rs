@@ -3,7 +3,7 @@
 //! The map says from where each landmark is seen ([`covimap_map::Sensing`]). A look shows a set `S`; from
 //! a place `y` of a chart it has the probability
 //!
-//! `L(y) = prod_{i in S} (e + q p_i v_i(y)) prod_{j not in S, in sight} (1 - q p_j v_j(y))`  (1)
+//! `L(y) = prod_{i in S} (e + (1 - e) q p_i v_i(y)) prod_{j not in S, in sight} (1 - q p_j v_j(y))`  (1)
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -14,7 +14,7 @@
 //! | in sight | near, and not occluded from half or more of those seen nearby: not seeing what a wall hides says nothing |
 //!
 //! The prior is uniform over the charts. The posterior may have several *modes*; each has a probability, a
-//! mean and a covariance. Against all places stands one more hypothesis: that the robot is *lost*, at no place of
+//! mean and a covariance, in which the bend of the chart as a whole is contained. Against all places stands one more hypothesis: that the robot is *lost*, at no place of
 //! the map, and sees any landmarks at random, or new ones.
 //!
 //! # Algorithm
@@ -29,6 +29,7 @@
 mod modes;
 mod sight;
 mod surroundings;
+mod tracker;
 
 use std::sync::Arc;
 
@@ -39,6 +40,7 @@ use crate::{MapIndex, PlanError};
 pub use modes::Mode;
 use modes::Patch;
 use surroundings::Surroundings;
+pub use tracker::{TrackParams, Tracker};
 
 /// Share of false sightings that is reckoned with, whatever the log had: the field is harder.
 const FALSE_SHARE: f64 = 0.02;
@@ -93,7 +95,8 @@ impl Location {
     /// or none explains more than half of them.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        self.lost > 0.5 || self.misfits.len() >= self.fits
+        let most_misfit = !self.misfits.is_empty() && self.misfits.len() >= self.fits;
+        self.modes.is_empty() || self.lost > 0.5 || most_misfit
     }
 }
 
@@ -149,13 +152,18 @@ impl Localiser {
         let mut patches: Vec<Patch> = Vec::new();
         for (component, middle) in self.crowds(&look.known) {
             let sight = self.sight(look, component, middle);
-            let patch = Patch::around(&sight, component, middle, &patches);
+            let warp = self.sensing().sensor(component).warp;
+            let patch = Patch::around(&sight, component, middle, warp, &patches);
             patches.push(patch);
         }
         let best = patches.iter().map(Patch::log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let evidence: f64 = patches.iter().map(|patch| (patch.log_evidence() - best).exp()).sum();
-        let modes = modes::modes(&patches);
-        let lost = self.lost(look, best + evidence.ln() - self.area.ln());
+        self.location(look, modes::modes(&patches), best + evidence.ln() - self.area.ln())
+    }
+
+    /// These modes, by the log of the evidence for being anywhere on the map.
+    fn location(&self, look: &Look, modes: Vec<Mode>, on_map: f64) -> Location {
+        let lost = self.lost(look, on_map);
         let misfits = modes.first().map_or(Vec::new(), |best| self.misfits(look, best));
         Location { modes, lost, fits: look.known.len() - misfits.len(), misfits }
     }
@@ -171,7 +179,7 @@ impl Localiser {
         let any = ((known + unknown).max(1.0) / self.index.map().len().max(1) as f64).min(1.0);
         let lost = LOST.ln() + known * ((1.0 - UNKNOWN[0]) * any).ln() + unknown * UNKNOWN[0].ln();
         let found = (1.0 - LOST).ln() + on_map + known * (1.0 - UNKNOWN[1]).ln() + unknown * UNKNOWN[1].ln();
-        if look.known.is_empty() { 1.0 } else { 1.0 / (1.0 + (found - lost).exp()) }
+        1.0 / (1.0 + (found - lost).exp())
     }
 
     /// Component and middle of every crowd among the landmarks seen, the largest crowd first.

@@ -4,10 +4,11 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 
-const SENSOR: SensorModel = SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3 };
+pub(super) const SENSOR: SensorModel =
+    SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
 
 /// A map of landmarks at these places of these charts, called by their numbers.
-fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> GlobalMap {
+pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> GlobalMap {
     let ids: Vec<String> = (0..landmarks.len()).map(|i| i.to_string()).collect();
     let names: LandmarkNames = ids.iter().map(String::as_str).collect();
     let placed = |&(component, position): &(u32, Point)| PlacedLandmark {
@@ -30,19 +31,23 @@ fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> 
         .unwrap()
 }
 
-fn localiser(map: GlobalMap) -> Localiser {
+pub(super) fn localiser(map: GlobalMap) -> Localiser {
     Localiser::new(Arc::new(MapIndex::new(Arc::new(map)))).unwrap()
 }
 
 /// `n` landmarks at ten to a square unit in a chart of its own.
-fn hall(n: usize, component: u32) -> Vec<(u32, Point)> {
+pub(super) fn hall(n: usize, component: u32) -> Vec<(u32, Point)> {
     let side = (n as f64 / 10.0).sqrt();
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(component) + 1);
     (0..n).map(|_| (component, [rng.random_range(0.0..side), rng.random_range(0.0..side)])).collect()
 }
 
 /// What a robot at a place sees of landmarks that stand there.
-fn seen_from(place: Point, points: impl Iterator<Item = Point>, rng: &mut ChaCha8Rng) -> Vec<LandmarkId> {
+pub(super) fn seen_from(
+    place: Point,
+    points: impl Iterator<Item = Point>,
+    rng: &mut ChaCha8Rng,
+) -> Vec<LandmarkId> {
     let chance = |point| 0.9 * SENSOR.visibility(distance(point, place));
     (0..)
         .zip(points)
@@ -51,7 +56,7 @@ fn seen_from(place: Point, points: impl Iterator<Item = Point>, rng: &mut ChaCha
         .collect()
 }
 
-fn look(known: &[u32]) -> Look {
+pub(super) fn look(known: &[u32]) -> Look {
     Look { known: known.iter().copied().map(LandmarkId).collect(), unknown: Vec::new() }
 }
 
