@@ -60,8 +60,25 @@ const CROWDED: usize = 256;
 pub struct Look {
     /// Landmarks of the map, ascending, each once.
     pub known: Vec<LandmarkId>,
+    /// IDs that several landmarks of the map bear, each with these landmarks.
+    pub copies: Vec<Vec<LandmarkId>>,
     /// IDs that the map does not have, in the order given, each once.
     pub unknown: Vec<String>,
+}
+
+impl Look {
+    /// Number of IDs that the map has.
+    fn ids(&self) -> usize {
+        self.known.len() + self.copies.len()
+    }
+
+    /// Every landmark that may have been seen, ascending.
+    fn candidates(&self) -> Vec<LandmarkId> {
+        let mut all: Vec<LandmarkId> =
+            self.known.iter().chain(self.copies.iter().flatten()).copied().collect();
+        all.sort_unstable();
+        all
+    }
 }
 
 /// Where the robot may be.
@@ -74,7 +91,8 @@ pub struct Location {
     pub lost: f64,
     /// How many of the known landmarks seen can be seen from the best mode.
     pub fits: usize,
-    /// Those that cannot, ascending: false sightings, if the robot is there.
+    /// Those that cannot, ascending: false sightings, if the robot is there. Of an ID that several landmarks bear,
+    /// the first.
     pub misfits: Vec<LandmarkId>,
 }
 
@@ -131,26 +149,35 @@ impl Localiser {
         &self.index
     }
 
-    /// Reads a look. An ID that is repeated counts once.
+    /// Reads a look. An ID that is repeated counts once. Where the map has `A#1`, `A#2` and so on instead of `A`,
+    /// the look shows one of them.
     pub fn look<'a>(&self, ids: impl IntoIterator<Item = &'a str>) -> Look {
         let mut look = Look::default();
         for id in ids {
             match self.index.lookup(id) {
                 Some(landmark) => look.known.push(landmark),
+                None if self.copies(id).len() > 1 => look.copies.push(self.copies(id)),
                 None if look.unknown.iter().any(|other| other == id) => (),
                 None => look.unknown.push(id.to_owned()),
             }
         }
         look.known.sort_unstable();
         look.known.dedup();
+        look.copies.sort_unstable();
+        look.copies.dedup();
         look
+    }
+
+    /// The landmarks that the map made of an ID which several bear.
+    fn copies(&self, id: &str) -> Vec<LandmarkId> {
+        (1..).map_while(|number| self.index.lookup(&format!("{id}#{number}"))).collect()
     }
 
     /// Where a robot may be that sees this.
     #[must_use]
     pub fn locate(&self, look: &Look) -> Location {
         let mut patches: Vec<Patch> = Vec::new();
-        for (component, middle) in self.crowds(&look.known) {
+        for (component, middle) in self.crowds(&look.candidates()) {
             let sight = self.sight(look, component, middle);
             let warp = self.sensing().sensor(component).warp;
             let patch = Patch::around(&sight, component, middle, warp, &patches);
@@ -165,17 +192,22 @@ impl Localiser {
     fn location(&self, look: &Look, modes: Vec<Mode>, on_map: f64) -> Location {
         let lost = self.lost(look, on_map);
         let misfits = modes.first().map_or(Vec::new(), |best| self.misfits(look, best));
-        Location { modes, lost, fits: look.known.len() - misfits.len(), misfits }
+        Location { modes, lost, fits: look.ids() - misfits.len(), misfits }
     }
 
     fn misfits(&self, look: &Look, mode: &Mode) -> Vec<LandmarkId> {
         let sight = self.sight(look, mode.component, mode.position);
-        look.known.iter().copied().filter(|&landmark| !sight.explains(landmark, mode.position)).collect()
+        let explains = |landmark: LandmarkId| sight.explains(landmark, mode.position);
+        let copies = look.copies.iter().filter(|copies| !copies.iter().any(|&copy| explains(copy)));
+        let known = look.known.iter().copied().filter(|&landmark| !explains(landmark));
+        let mut misfits: Vec<LandmarkId> = known.chain(copies.map(|copies| copies[0])).collect();
+        misfits.sort_unstable();
+        misfits
     }
 
     /// Probability of being lost, by the log of the evidence for being anywhere on the map.
     fn lost(&self, look: &Look, on_map: f64) -> f64 {
-        let (known, unknown) = (look.known.len() as f64, look.unknown.len() as f64);
+        let (known, unknown) = (look.ids() as f64, look.unknown.len() as f64);
         let any = ((known + unknown).max(1.0) / self.index.map().len().max(1) as f64).min(1.0);
         let lost = LOST.ln() + known * ((1.0 - UNKNOWN[0]) * any).ln() + unknown * UNKNOWN[0].ln();
         let found = (1.0 - LOST).ln() + on_map + known * (1.0 - UNKNOWN[1]).ln() + unknown * UNKNOWN[1].ln();
@@ -217,9 +249,9 @@ impl Localiser {
 
     fn sight(&self, look: &Look, component: u32, middle: Point) -> sight::Sight {
         let sensor = self.sensing().sensor(component);
-        let seen = (look.known.len() + look.unknown.len()) as f64;
+        let seen = (look.ids() + look.unknown.len()) as f64;
         let falsely = (sensor.outliers.max(FALSE_SHARE) * seen / self.index.map().len() as f64).min(0.5);
-        sight::Sight::new(&self.surroundings, self.index.map(), &look.known, component, middle, falsely)
+        sight::Sight::new(&self.surroundings, self.index.map(), look, component, middle, falsely)
     }
 
     fn sensing(&self) -> &Sensing {

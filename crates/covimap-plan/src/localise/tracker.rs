@@ -139,7 +139,7 @@ impl Tracker {
         let jump = if belief.is_empty() { 1.0 } else { self.params.jump };
         let mass = jump * COARSE * COARSE / self.localiser.area;
         let mut landed: Vec<Belief> = Vec::new();
-        for (component, middle) in self.localiser.crowds(&look.known) {
+        for (component, middle) in self.localiser.crowds(&look.candidates()) {
             let side = self.side(component);
             let half = (PLACES / COARSE).ceil() as i32;
             let centre = middle.map(|c| (c / side).round() as i32);

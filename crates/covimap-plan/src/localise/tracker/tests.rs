@@ -1,4 +1,4 @@
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
@@ -11,7 +11,7 @@ fn tracker(localiser: Localiser) -> Tracker {
 /// Looks along a way.
 fn looks_along(way: &[Point], points: &[Point], rng: &mut ChaCha8Rng) -> Vec<Look> {
     let look =
-        |place: &Point| Look { known: seen_from(*place, points.iter().copied(), rng), unknown: Vec::new() };
+        |place: &Point| Look { known: seen_from(*place, points.iter().copied(), rng), ..Look::default() };
     way.iter().map(look).collect()
 }
 
