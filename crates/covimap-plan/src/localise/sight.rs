@@ -93,7 +93,8 @@ impl Sight {
     /// `ln L(y)` at a place, for looks of this quality. The edges are softened by `blur` more, so that a
     /// coarse grid misses nothing.
     pub fn log_likelihood(&self, place: Point, quality: f64, blur: f64) -> f64 {
-        let mut log = self.elsewhere as f64 * self.falsely.ln();
+        // A look without a sighting has no false one either.
+        let mut log = if self.elsewhere > 0 { self.elsewhere as f64 * self.falsely.ln() } else { 0.0 };
         let mut product = 1.0;
         for witness in &self.witnesses {
             let chance = quality * self.chance(witness, place, blur);
