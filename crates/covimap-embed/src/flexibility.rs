@@ -11,7 +11,6 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::laplacian::Factored;
 use crate::newton::NormalEquations;
 use crate::{EmbedError, PairDistances, Point};
 
@@ -40,8 +39,7 @@ pub fn flexibility(
     assert_eq!(deviations.len(), pairs.pairs().len(), "one deviation a pair");
     let n = points.len();
     let mut system = NormalEquations::new(pairs);
-    system.assemble(pairs, points, DAMPING);
-    let factored = Factored::new(&system.matrix)?;
+    system.factor(pairs, points, DAMPING)?;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut squares = 0.0;
     for _ in 0..draws {
@@ -58,7 +56,7 @@ pub fn flexibility(
                 }
             }
         }
-        factored.solve(&mut moves, 1);
+        system.solve(&mut moves);
         take_out_frame(points, &mut moves);
         squares += moves.iter().map(|c| c * c).sum::<f64>();
     }
