@@ -13,6 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use covimap_map::MapError;
+use covimap_plan::PlanError;
 use covimap_sim::SimError;
 
 use crate::console::complain;
@@ -79,6 +80,10 @@ fn code(error: &anyhow::Error) -> u8 {
     if error.is::<BadLines>() {
         return BAD_INPUT;
     }
+    // A question that a map cannot answer is a wrong question or a wrong map.
+    if error.is::<PlanError>() {
+        return BAD_INPUT;
+    }
     match error.downcast_ref() {
         Some(MapError::Interrupted) => INTERRUPTED,
         Some(
@@ -89,6 +94,8 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::TooManySteps { .. }
             | MapError::MapFormat { .. }
             | MapError::InvalidMap { .. }
+            | MapError::DamagedMap { .. }
+            | MapError::NoRouteGraph { .. }
             | MapError::NothingTogether { .. }
             | MapError::NoInformation { .. }
             | MapError::TooLargeForClassical { .. }

@@ -1,10 +1,12 @@
 //! Options that several commands share.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::Context;
 use clap::{CommandFactory, ValueEnum, error::ErrorKind};
-use covimap_map::LogFormat;
+use covimap_map::{GlobalMap, LogFormat};
+use covimap_plan::MapIndex;
 
 use crate::commands::Cli;
 
@@ -60,6 +62,27 @@ impl ThreadArgs {
             .num_threads(count)
             .build_global()
             .with_context(|| format!("cannot start {count} threads; ask for fewer with --threads"))
+    }
+}
+
+/// A map to ask, and how the answer is printed.
+#[derive(Debug, clap::Args)]
+pub struct QuestionArgs {
+    /// Map file; `-` is stdin
+    #[arg(value_name = "MAP.json")]
+    map: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl QuestionArgs {
+    /// The map, ready for questions.
+    ///
+    /// # Errors
+    /// Those of [`GlobalMap::load`].
+    pub fn index(&self) -> anyhow::Result<MapIndex> {
+        Ok(MapIndex::new(Arc::new(GlobalMap::load(&self.map)?)))
     }
 }
 

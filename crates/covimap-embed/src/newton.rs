@@ -31,7 +31,7 @@ use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
 use memory::{Memory, dot};
-use normal_equations::NormalEquations;
+pub(crate) use normal_equations::NormalEquations;
 
 /// Damping of the first factor; each later one has a tenth of the last.
 const FIRST_DAMPING: f64 = 1e-2;

@@ -53,6 +53,23 @@ pub enum MapError {
         /// Format number that this build reads.
         known: u64,
     },
+    /// A binary map file that is not as it was written.
+    #[error("{file}: the map file is damaged, {what}; copy it again or build the map again")]
+    DamagedMap {
+        /// File as the user named it.
+        file: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A component without a road makes no route graph.
+    #[error(
+        "component {component} of the map has no line of sight, so there is no route in it; give another component, or \
+         build a map that holds none at all again from its log"
+    )]
+    NoRouteGraph {
+        /// The component.
+        component: u32,
+    },
     /// Parts of a map that contradict each other.
     #[error("{what}")]
     InvalidMap {

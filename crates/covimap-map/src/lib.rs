@@ -1,5 +1,6 @@
 //! A log of which landmarks were seen together in, a global map out.
 
+mod aliases;
 mod classical;
 mod component;
 mod covisibility;
@@ -25,6 +26,7 @@ mod progress;
 mod regions;
 mod report;
 mod sensing;
+mod sight_lines;
 mod sightings;
 mod stitch;
 mod truth;
@@ -34,7 +36,7 @@ pub use covisibility::CoVisibility;
 pub use delaunay::delaunay_edges;
 pub use distances::{DistanceReport, FamilyScore, ShepardRow};
 pub use error::MapError;
-pub use global_map::{GlobalMap, PlacedLandmark};
+pub use global_map::{ChartFit, GlobalMap, PlacedLandmark};
 pub use honesty::{HonestLinks, HonestyReport};
 pub use landmarks::{LandmarkId, LandmarkNames};
 pub use links::{Link, LinkGraph};
@@ -48,6 +50,7 @@ pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Warning};
 pub use sensing::{Sensing, SensorModel};
+pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };

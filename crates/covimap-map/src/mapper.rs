@@ -2,6 +2,7 @@
 
 use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 
+use crate::aliases;
 use crate::classical;
 use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Places};
@@ -10,7 +11,8 @@ use crate::report::warnings;
 use crate::sensing;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
-    LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SightingLog, Stage,
+    LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SightLines, SightingLog,
+    Stage,
 };
 
 /// Builds maps with one set of checked parameters.
@@ -37,14 +39,26 @@ impl Mapper {
     /// all landmarks are always seen together; [`MapError::TooLargeForClassical`];
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
-        self.build_of(log, None, observer)
+        let counts = CoVisibility::count(log, observer)?;
+        let aliases = match self.params.method {
+            Method::Auto => aliases::find(&counts),
+            Method::Classical => Vec::new(),
+        };
+        if aliases.is_empty() {
+            return self.build_counted(log, counts, None, observer);
+        }
+        let split = aliases::split(log, &aliases);
+        let counts = CoVisibility::count(&split, observer)?;
+        let mut map = self.build_counted(&split, counts, None, observer)?;
+        map.report.warnings.insert(0, aliases::warning(log, &aliases));
+        Ok(map)
     }
 
     /// Polishes and refines from given positions, without regions and local maps: what the same minimisation
     /// makes of a start of one's own, such as surveyed positions.
     ///
     /// `start` has a position for every landmark of the log, each component in any frame and unit. The stages
-    /// are those of [`Method::Auto`], whatever the method of the parameters.
+    /// are those of [`Method::Auto`], whatever the method of the parameters; every ID is taken for one landmark.
     ///
     /// # Errors
     /// As [`Mapper::build`]; [`MapError::Embed`] for a start of another length or with all landmarks of a
@@ -65,16 +79,18 @@ impl Mapper {
             return Err(MapError::NotFinite { index, position: start[index] });
         }
         let params = MapperParams { method: Method::Auto, ..self.params.clone() };
-        Self { params }.build_of(log, Some(start), observer)
+        let counts = CoVisibility::count(log, observer)?;
+        Self { params }.build_counted(log, counts, Some(start), observer)
     }
 
-    fn build_of(
+    /// Maps a log in which every ID is one landmark.
+    fn build_counted(
         &self,
         log: &SightingLog,
+        counts: CoVisibility,
         start: Option<&[Point]>,
         observer: &dyn Observer,
     ) -> Result<GlobalMap, MapError> {
-        let counts = CoVisibility::count(log, observer)?;
         check_information(&counts)?;
         let (graph, honesty) = match self.params.method {
             Method::Auto => honest_links(&counts),
@@ -99,7 +115,9 @@ impl Mapper {
         let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
         let report = report(&counts, &graph, honesty, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
-        let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?;
+        let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
+        let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
+            .with_sight_lines(sight_lines)?;
         match sensing {
             Some(sensing) => map.with_sensing(sensing),
             None => Ok(map),

@@ -7,6 +7,50 @@ use hashbrown::HashTable;
 use rayon::prelude::*;
 use rustc_hash::FxHasher;
 
+use crate::{MapIndex, PlanError};
+
+/// What names a landmark: its string ID, or its number.
+pub trait LandmarkRef {
+    /// The number that the landmark has in this map. `O(1)`, or `O(n)` for an ID that is not in the map.
+    ///
+    /// # Errors
+    /// [`PlanError::UnknownLandmark`] for an ID that the map does not have, with the most similar one;
+    /// [`PlanError::UnknownNumber`] for a number past the last.
+    fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError>;
+}
+
+impl LandmarkRef for LandmarkId {
+    fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError> {
+        let landmarks = index.map().len();
+        if self.index() < landmarks {
+            Ok(*self)
+        } else {
+            Err(PlanError::UnknownNumber { number: self.0, landmarks })
+        }
+    }
+}
+
+impl LandmarkRef for str {
+    fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError> {
+        index.lookup(self).ok_or_else(|| PlanError::UnknownLandmark {
+            id: self.to_owned(),
+            nearest: most_similar(index.map().names(), self).map(str::to_owned),
+        })
+    }
+}
+
+impl LandmarkRef for String {
+    fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError> {
+        self.as_str().find_in(index)
+    }
+}
+
+impl<T: LandmarkRef + ?Sized> LandmarkRef for &T {
+    fn find_in(&self, index: &MapIndex) -> Result<LandmarkId, PlanError> {
+        (**self).find_in(index)
+    }
+}
+
 /// The numbers of landmarks, found by their names. Holds no text of its own.
 #[derive(Debug, Clone)]
 pub(crate) struct NameTable {

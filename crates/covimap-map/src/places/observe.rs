@@ -3,7 +3,7 @@
 
 use covimap_embed::Point;
 
-use super::grid::Sight;
+use super::grid::CELLS;
 use super::posterior::{Neighbours, Posterior, Step, Witness, Workspace};
 use super::sensor::Sensor;
 use super::{Model, SENSOR_SETS, SENSOR_STEPS, SeenSets, fit_sensor, landmark_scores, sensor_scores};
@@ -32,19 +32,19 @@ pub(crate) fn observe(
     observer: &dyn Observer,
 ) -> Result<Observed, MapError> {
     let sets = &sets.sample(SETS_PER_LANDMARK * points.len());
-    let neighbours = Neighbours::new(graph);
-    let mut model = fit_sensor(graph, &neighbours, sets, points.to_vec());
-    let scores = landmark_scores(&neighbours, sets, &model, observer)?;
+    let neighbours = &Neighbours::new(graph);
+    let mut model = fit_sensor(graph, neighbours, sets, points.to_vec());
+    let scores = landmark_scores(neighbours, sets, &model, observer)?;
     for (p, scores) in model.detectability.iter_mut().zip(&scores) {
         *p = scores.improved_detectability(*p, model.sensor.detectability);
     }
     for _ in 0..SENSOR_STEPS {
-        model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, true);
+        model.sensor = sensor_scores(neighbours, sets, &model).improve(model.sensor, true);
     }
     let range = model.sensor.range;
     Ok(Observed {
         sensor: model.sensor,
-        outliers: outliers(&neighbours, sets, &model),
+        outliers: outliers(neighbours, sets, &model),
         deviation: scores.iter().map(|scores| scores.deviation(range)).collect(),
         detectability: model.detectability,
     })
@@ -54,31 +54,30 @@ pub(crate) fn observe(
 /// they are false. One more is counted as if it were half false, for a share of zero is never certain.
 fn outliers(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> f64 {
     let posterior = Posterior::new(neighbours, model);
-    let false_sighting = model.sensor.false_sighting as f32;
     let mut workspace = Workspace::new(neighbours.landmarks());
     let (mut sightings, mut falsely) = (0.0, 0.0);
     for set in (0..sets.len()).step_by(sets.len().div_ceil(SENSOR_SETS).max(1)) {
         let seen = sets.seen(set);
         let step = posterior.of(seen, &mut workspace);
-        let seen_truly = |witness: &&Witness| {
-            witness.seen && truly(witness, &step, posterior.sight(), false_sighting) > 0.5
-        };
-        let explained = step.witnesses.iter().filter(seen_truly).count();
+        let is_explained = |witness: &&Witness| witness.seen && truly(&posterior, &step, witness) > 0.5;
+        let explained = step.witnesses.iter().filter(is_explained).count();
         sightings += sets.times(set) * seen.len() as f64;
         falsely += sets.times(set) * (seen.len() - explained) as f64;
     }
     (falsely + 0.5) / (sightings + 1.0)
 }
 
-/// Probability that a sighting is no false one.
-fn truly(witness: &Witness, step: &Step, sight: &Sight, false_sighting: f32) -> f32 {
-    let by_sight = witness.detectability - false_sighting;
-    let of_row = |row: usize| -> f32 {
-        let visibility = sight.visibility(witness.cutting, row);
-        let share = |(&weight, &v): (&f32, &f32)| {
-            weight * (1.0 - false_sighting * (1.0 - v) / (false_sighting + by_sight * v))
-        };
-        step.places[row].iter().zip(visibility).map(share).sum()
-    };
-    step.rows.clone().map(of_row).sum()
+/// Probability that a sighting is a true one, over the places of its step.
+fn truly(posterior: &Posterior, step: &Step, witness: &Witness) -> f32 {
+    let false_sighting = posterior.sight().false_sighting;
+    let mut truly = 0.0;
+    for row in step.rows.clone() {
+        let visibility = posterior.sight().visibility(witness.cutting, row);
+        for k in 0..CELLS {
+            let by_sight = (witness.detectability - false_sighting) * visibility[k];
+            let falsely = false_sighting * (1.0 - visibility[k]) / (false_sighting + by_sight);
+            truly += step.places[row][k] * (1.0 - falsely);
+        }
+    }
+    truly
 }

@@ -101,10 +101,10 @@ impl Scores {
             }
         }
         let sum = |lanes: Lanes| f64::from(lanes.iter().sum::<f32>());
-        let [gx, gy] = [sum(gx), sum(gy)];
+        let [x, y] = [sum(gx), sum(gy)];
         Self {
-            position: [gx, gy],
-            observed: [gx * gx, gx * gy, gy * gy],
+            position: [x, y],
+            observed: [x * x, x * y, y * y],
             information: [sum(xx), sum(xy), sum(yy)],
             detectability: sum(gp),
             detectability_information: sum(pp),
