@@ -78,23 +78,6 @@ fn chance_links_are_set_aside_and_the_error_rate_is_told() {
 }
 
 #[test]
-fn an_id_that_anything_is_misread_for_is_found_out() {
-    let (points, mut looks) = hall(9000);
-    misread(&mut looks, 0.02, |_| 17);
-    let counts = counts_of(&log_of(&looks));
-    let honest = HonestLinks::judge(&counts);
-    let of_17 = || verdicts(&counts, &honest).into_iter().filter(|&(i, j, ..)| i == 17 || j == 17);
-    let far = |&(i, j, ..): &(usize, usize, u32, bool)| distance(points[i], points[j]) > FAR;
-    // As it is misread for all, it is seen with most others, and with each of them often.
-    let counts_of_far: Vec<u32> = of_17().filter(far).map(|verdict| verdict.2).collect();
-    assert!(counts_of_far.len() > 60 && counts_of_far.iter().max() > Some(&20));
-    assert_eq!(of_17().filter(far).filter(|verdict| verdict.3).count(), 0);
-    // The partners next to it stay.
-    let next = |&(i, j, ..): &(usize, usize, u32, bool)| distance(points[i], points[j]) < 0.5 * RANGE;
-    assert!(of_17().filter(next).all(|verdict| verdict.3) && of_17().filter(next).count() > 0);
-}
-
-#[test]
 fn a_door_of_weak_links_stays_open() {
     // Two rooms of 200 that share a wall at x = 4; six landmarks on either side of a door are seen together
     // from the threshold, in few steps.

@@ -13,7 +13,7 @@
 //! a given share of the links there are (Benjamini and Hochberg, 1995).
 //!
 //! `f_i` is the number of false sightings of landmark i: the mean over all landmarks, or what its own
-//! unsupported links show if that is more beyond doubt. Some IDs are what anything is misread for.
+//! unsupported links show if that is more beyond doubt.
 
 use rayon::prelude::*;
 
