@@ -24,6 +24,11 @@ pub(crate) fn cases(cases: u32) -> ProptestConfig {
 
 /// Landmarks `L0, L1, ...` with their components, and lines of sight between them.
 pub(crate) fn map_of(placed: &[(Point, u32)], lines: &[(u32, u32, u32)]) -> GlobalMap {
+    map_seen(placed, lines, SIGHTINGS)
+}
+
+/// The same with all landmarks seen in so many steps.
+pub(crate) fn map_seen(placed: &[(Point, u32)], lines: &[(u32, u32, u32)], sightings: u32) -> GlobalMap {
     let mut names = LandmarkNames::default();
     for number in 0..placed.len() {
         names.push(&format!("L{number}"));
@@ -34,7 +39,7 @@ pub(crate) fn map_of(placed: &[(Point, u32)], lines: &[(u32, u32, u32)]) -> Glob
         position,
         component,
         region: component,
-        sightings: SIGHTINGS,
+        sightings,
         partners: partners(i) as u32,
     };
     let landmarks = placed.iter().enumerate().map(landmark).collect();
