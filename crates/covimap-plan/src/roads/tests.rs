@@ -118,7 +118,7 @@ fn the_bound_changes_no_cost() {
     points[7] = points[40];
     let index = index_of(&points, &lines_among(&points, 1));
     for objective in [Objective::Shortest, Objective::Safest] {
-        let roads = Roads::new(&index, params(objective, 20)).unwrap();
+        let roads = Roads::new(&index, params(objective, 35)).unwrap();
         let pairs: Vec<[LandmarkId; 2]> = (0..60).map(|i| [LandmarkId(i), LandmarkId(119 - i)]).collect();
         let mut found = 0;
         for &[from, to] in &pairs {
