@@ -136,6 +136,16 @@ fn the_bound_changes_no_cost() {
 }
 
 #[test]
+fn landmarks_at_one_place_have_ways_of_no_length() {
+    // Two legs of f = 80.5 / 121 cost less than one of f = 2.5 / 199.
+    let index = index_of(&[[1.0, 2.0]; 3], &[(0, 1, 80), (1, 2, 80), (0, 2, 2)]);
+    let safest = Roads::new(&index, params(Objective::Safest, 1)).unwrap().route("L0", "L2").unwrap();
+    assert_eq!((numbers(&safest), safest.length), (vec![0, 1, 2], 0.0));
+    let shortest = Roads::new(&index, RoadParams::default()).unwrap().route("L0", "L2").unwrap();
+    assert_eq!(shortest.length, 0.0);
+}
+
+#[test]
 fn many_routes_are_those_one_by_one() {
     let index = shortcut();
     let roads = Roads::new(&index, RoadParams::default()).unwrap();
