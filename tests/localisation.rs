@@ -14,7 +14,7 @@ const HELD_OUT: usize = 20;
 struct Found {
     /// Distances from the truth over the visibility range.
     errors: Vec<f64>,
-    /// Share of the steps whose truth lies in the 95 % region.
+    /// Steps whose truth lies in the 95 % region.
     inside: f64,
     lost: usize,
 }
@@ -50,30 +50,44 @@ fn locate(floor: Floor, landmarks: usize, seed: u64) -> Found {
         found.inside += f64::from(u8::from(best.squared_distance(truth) < 5.99));
         found.lost += usize::from(location.is_lost());
     }
-    found.inside /= found.errors.len() as f64;
-    found.errors.sort_by(f64::total_cmp);
-    println!(
-        "{} {seed}: {} steps, range {range:.3} rmse/range {:.3}, median {:.3} p95 {:.3}, inside {:.3}, lost {}",
-        floor.name(),
-        found.errors.len(),
-        fit.rmse / 0.55,
-        found.errors[found.errors.len() / 2],
-        found.errors[found.errors.len() * 95 / 100],
-        found.inside,
-        found.lost,
-    );
     found
 }
 
-#[test]
-fn measure() {
-    for floor in [
-        Floor::Hall {},
-        Floor::Blocks { street: 1.0, building: 2.0 },
-        Floor::Office { room: 3.0, door: 0.9, missing_doors: 0.1 },
-    ] {
-        for seed in 1..=3 {
-            locate(floor, 800, seed);
-        }
+/// What was found over several seeds: the median error, over the range, and the share inside the region.
+fn over_seeds(floor: Floor) -> (f64, f64) {
+    let (mut errors, mut inside) = (Vec::new(), 0.0);
+    for (landmarks, seed) in [(300, 1), (400, 2), (500, 3)] {
+        let found = locate(floor, landmarks, seed);
+        assert!(found.lost * 200 <= found.errors.len(), "{} lost of {}", found.lost, found.errors.len());
+        inside += found.inside;
+        errors.extend(found.errors);
     }
+    let count = errors.len();
+    errors.sort_by(f64::total_cmp);
+    println!(
+        "{}: median {:.3}, inside {:.3} of {count}",
+        floor.name(),
+        errors[count / 2],
+        inside / count as f64
+    );
+    (errors[count / 2], inside / count as f64)
+}
+
+#[test]
+fn in_a_hall() {
+    let (median, inside) = over_seeds(Floor::Hall {});
+    assert!(median < 0.5 && (0.9..=0.98).contains(&inside), "{median} {inside}");
+}
+
+#[test]
+fn among_street_blocks() {
+    let (median, inside) = over_seeds(Floor::Blocks { street: 1.0, building: 2.0 });
+    assert!(median < 0.5 && (0.9..=0.98).contains(&inside), "{median} {inside}");
+}
+
+#[test]
+fn in_offices() {
+    let (median, inside) = over_seeds(Floor::Office { room: 3.0, door: 0.9, missing_doors: 0.1 });
+    // Rooms with narrow doors turn against each other by more than their maps tell.
+    assert!(median < 0.5 && (0.65..=0.98).contains(&inside), "{median} {inside}");
 }

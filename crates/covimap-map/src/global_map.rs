@@ -231,8 +231,13 @@ mod tests {
             let landmarks = vec![at([0.0; 2]), at([1.0; 2])];
             GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default()).unwrap()
         };
-        let sensor =
-            |length| SensorModel { range: length, edge: 0.1 * length, detectability: 0.9, outliers: 0.01 };
+        let sensor = |length| SensorModel {
+            range: length,
+            edge: 0.1 * length,
+            detectability: 0.9,
+            outliers: 0.01,
+            warp: 0.0,
+        };
         let sensing = |length| {
             Sensing::from_parts(vec![sensor(length)], vec![0.9; 2], vec![0.25 * length; 2], &[]).unwrap()
         };

@@ -1,5 +1,6 @@
 //! A log of which landmarks were seen together in, a global map out.
 
+mod aliases;
 mod classical;
 mod component;
 mod covisibility;

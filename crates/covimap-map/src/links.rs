@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::{CoVisibility, LandmarkId};
 
 /// The paper's `alpha_2`; it sets the unit of the map.
-const ALPHA: f64 = 0.3;
+pub(crate) const ALPHA: f64 = 0.3;
 
 /// One end of a link, as stored in the row of the other end.
 #[derive(Debug, Clone, Copy, PartialEq)]

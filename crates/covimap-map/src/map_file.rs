@@ -17,7 +17,7 @@
 //! any has no such key, and neither has an older file. A map in a frame known from outside has the key
 //! `alignment` ([`ChartFit`]) before `landmarks`.
 //! A map that knows its sensor has more: `detectability` and `deviation` of each landmark, and after
-//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001}]`, one a
+//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001,"warp":0.02}]`, one a
 //! component, and `"occluded":[[0,12]]`, pairs of places in the list of landmarks; see [`Sensing`].
 //!
 //! A landmark takes a line, so that `diff` and `grep` work. The bytes depend on the map alone.

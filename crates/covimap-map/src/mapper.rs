@@ -2,6 +2,7 @@
 
 use covimap_embed::{PairDistances, Point, stress1};
 
+use crate::aliases;
 use crate::classical;
 use crate::component::{ComponentMap, map_component, put_in_frame};
 use crate::places::SeenSets;
@@ -37,6 +38,27 @@ impl Mapper {
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
         let counts = CoVisibility::count(log, observer)?;
+        let aliases = match self.params.method {
+            Method::Auto => aliases::find(&counts),
+            Method::Classical => Vec::new(),
+        };
+        if aliases.is_empty() {
+            return self.build_counted(log, counts, observer);
+        }
+        let split = aliases::split(log, &aliases);
+        let counts = CoVisibility::count(&split, observer)?;
+        let mut map = self.build_counted(&split, counts, observer)?;
+        map.report.warnings.insert(0, aliases::warning(log, &aliases));
+        Ok(map)
+    }
+
+    /// Maps a log in which every ID is one landmark.
+    fn build_counted(
+        &self,
+        log: &SightingLog,
+        counts: CoVisibility,
+        observer: &dyn Observer,
+    ) -> Result<GlobalMap, MapError> {
         check_information(&counts)?;
         let graph = LinkGraph::from_counts(&counts);
         let components = graph.components();

@@ -149,6 +149,16 @@ pub enum PlanError {
     /// A map that could not be put together.
     #[error(transparent)]
     Map(#[from] MapError),
+    /// A setting is out of its range.
+    #[error("setting {name} is {value}; give {wanted}")]
+    BadParameter {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is accepted.
+        wanted: &'static str,
+    },
     /// A map that does not know from where its landmarks are seen.
     #[error(
         "the map of {landmarks} landmarks does not know its sensor, so that no place can be told; build it again, from \

@@ -31,6 +31,7 @@
 //! assert_eq!(route.landmarks.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//! - [`Localiser`]: where a robot is that sees these landmarks; [`Tracker`]: the same on the move.
 
 mod align;
 mod charts;
@@ -54,7 +55,7 @@ pub use confidence::Covariance;
 pub use error::PlanError;
 pub use explain::{Advice, Explanation, Hold, explain};
 pub use index::MapIndex;
-pub use localise::{Localiser, Location, Look, Mode};
+pub use localise::{Localiser, Location, Look, Mode, TrackParams, Tracker};
 pub use names::LandmarkRef;
 pub use relations::{Orientation, Turn};
 pub use roads::{Objective, RoadParams, Roads, Route, Waypoint};

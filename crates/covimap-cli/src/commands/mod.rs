@@ -8,6 +8,7 @@ mod evaluate;
 mod explain;
 mod export;
 mod info;
+mod locate;
 mod near;
 mod relation;
 mod reproduce;
@@ -25,6 +26,7 @@ Examples:
   covimap export run.map.json --to svg -o run.svg
   covimap evaluate run.map.json truth.csv
   covimap route run.map.json door desk
+  covimap locate run.map.json --seen door,desk
 
 Results go to stdout, messages to stderr.
 Exit codes: 0 done, 1 failure, 2 usage, 3 bad input, 130 interrupted.";
@@ -47,6 +49,7 @@ enum Command {
     Export(export::Args),
     Info(info::Args),
     Near(near::Args),
+    Locate(locate::Args),
     Relation(relation::Args),
     Route(route::Args),
     Explain(explain::Args),
@@ -70,6 +73,7 @@ impl Cli {
             Command::Export(args) => args.run(console),
             Command::Info(args) => args.run(),
             Command::Near(args) => args.run(),
+            Command::Locate(args) => args.run(console),
             Command::Relation(args) => args.run(console),
             Command::Route(args) => args.run(),
             Command::Explain(args) => args.run(),

@@ -175,3 +175,39 @@ fn align_refuses_what_tells_nothing() {
     align(&["--turn", "A,B"], USAGE, "give three IDs, as in door,desk,window");
     align(&["--turn", "A,B,C", "--turn", "A,C,B"], BAD_INPUT, "contradicts the known positions");
 }
+
+#[test]
+fn locate_tells_the_place_and_how_sure_it_is() {
+    let scratch = square_and_pair();
+    let found = scratch.succeeds(&["locate", "map.json", "--seen", "A,B,C", "--json"]).json();
+    assert!(found["x"].is_f64() && found["y"].is_f64() && found["ambiguous"].is_boolean());
+    assert_eq!(found["component"], 0);
+    let covariance = |a: usize, b: usize| found["covariance"][a][b].as_f64().unwrap();
+    assert_eq!(covariance(0, 1), covariance(1, 0));
+    assert!(covariance(0, 0) * covariance(1, 1) > covariance(0, 1).powi(2));
+    let total: f64 =
+        found["modes"].as_array().unwrap().iter().map(|m| m["probability"].as_f64().unwrap()).sum();
+    assert!((total - 1.0).abs() < 1e-9);
+    // The option given twice, an ID that is not there, and one of the other component.
+    let seen = ["locate", "map.json", "--seen", "A,B", "--seen", "C,nobody,P", "--json"];
+    let found = scratch.succeeds(&seen).json();
+    assert_eq!((names(&found["unknown"]), names(&found["misfits"])), (vec!["nobody"], vec!["P"]));
+    let run = scratch.succeeds(&["locate", "map.json", "--seen", "A,B,C,nobody"]);
+    assert!(run.stdout.contains("in component 0, standard deviations"), "{}", run.stdout);
+    assert!(run.stderr.contains("1 ID not in the map: nobody"), "{}", run.stderr);
+}
+
+#[test]
+fn locate_says_when_nothing_is_known() {
+    let scratch = square_and_pair();
+    let found = scratch.succeeds(&["locate", "map.json", "--seen", "nobody", "--json"]).json();
+    assert_eq!((&found["lost"], &found["ambiguous"]), (&true.into(), &false.into()));
+    assert!(found["x"].is_null() && found["component"].is_null());
+    let text = scratch.succeeds(&["locate", "map.json", "--seen", "nobody", "-q"]).stdout;
+    assert!(text.starts_with("lost"), "{text}");
+    scratch.refuses(&["locate", "map.json"], USAGE, "--seen");
+    scratch.refuses(&["locate", "none.json", "--seen", "A"], BAD_INPUT, "none.json");
+    scratch.file("pair.jsonl", "{\"seen\": [\"P\", \"Q\"]}\n".repeat(3));
+    scratch.succeeds(&["build", "pair.jsonl", "-q", "-o", "pair.json"]);
+    scratch.refuses(&["locate", "pair.json", "--seen", "P"], BAD_INPUT, "does not know its sensor");
+}

@@ -3,8 +3,9 @@
 
 use covimap_embed::Point;
 
-use super::posterior::{Posterior, Workspace};
-use super::sensor::{FALSE_SIGHTING, Sensor, probability};
+use super::grid::CELLS;
+use super::posterior::{Neighbours, Posterior, Step, Witness, Workspace};
+use super::sensor::{FALSE_SIGHTING, Sensor};
 use super::{Model, SENSOR_SETS, SENSOR_STEPS, SeenSets, fit_sensor, landmark_scores, sensor_scores};
 use crate::{LinkGraph, MapError, Observer};
 
@@ -31,18 +32,19 @@ pub(crate) fn observe(
     observer: &dyn Observer,
 ) -> Result<Observed, MapError> {
     let sets = &sets.sample(SETS_PER_LANDMARK * points.len());
-    let mut model = fit_sensor(graph, sets, points.to_vec());
-    let scores = landmark_scores(graph, sets, &model, observer)?;
+    let neighbours = &Neighbours::new(graph);
+    let mut model = fit_sensor(graph, neighbours, sets, points.to_vec());
+    let scores = landmark_scores(neighbours, sets, &model, observer)?;
     for (p, scores) in model.detectability.iter_mut().zip(&scores) {
         *p = scores.improved_detectability(*p, model.sensor.detectability);
     }
     for _ in 0..SENSOR_STEPS {
-        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
+        model.sensor = sensor_scores(neighbours, sets, &model).improve(model.sensor, true);
     }
     let range = model.sensor.range;
     Ok(Observed {
         sensor: model.sensor,
-        outliers: outliers(graph, sets, &model),
+        outliers: outliers(neighbours, sets, &model),
         deviation: scores.iter().map(|scores| scores.deviation(range)).collect(),
         detectability: model.detectability,
     })
@@ -50,24 +52,31 @@ pub(crate) fn observe(
 
 /// Share of the sightings that the sensor cannot explain: those of which it is more likely than not that
 /// they are false. One more is counted as if it were half false, for a share of zero is never certain.
-fn outliers(graph: &LinkGraph, sets: &SeenSets, model: &Model) -> f64 {
-    let posterior = Posterior::new(graph, model);
-    let mut workspace = Workspace::new(graph.landmarks());
+fn outliers(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> f64 {
+    let posterior = Posterior::new(neighbours, model);
+    let mut workspace = Workspace::new(neighbours.landmarks());
     let (mut sightings, mut falsely) = (0.0, 0.0);
     for set in (0..sets.len()).step_by(sets.len().div_ceil(SENSOR_SETS).max(1)) {
         let seen = sets.seen(set);
         let step = posterior.of(seen, &mut workspace);
-        let explained = step.witnesses.iter().filter(|witness| witness.seen).filter(|witness| {
-            let truly = |&(place, weight): &(Point, f64)| {
-                let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
-                let [visibility, _] = posterior.curve().at(dx * dx + dy * dy);
-                let all = probability(witness.detectability, visibility);
-                weight * (1.0 - FALSE_SIGHTING * (1.0 - visibility) / all)
-            };
-            step.places.iter().map(truly).sum::<f64>() > 0.5
-        });
+        let is_explained = |witness: &&Witness| witness.seen && truly(&posterior, &step, witness) > 0.5;
+        let explained = step.witnesses.iter().filter(is_explained).count();
         sightings += sets.times(set) * seen.len() as f64;
-        falsely += sets.times(set) * (seen.len() - explained.count()) as f64;
+        falsely += sets.times(set) * (seen.len() - explained) as f64;
     }
     (falsely + 0.5) / (sightings + 1.0)
+}
+
+/// Probability that a sighting is a true one, over the places of its step.
+fn truly(posterior: &Posterior, step: &Step, witness: &Witness) -> f32 {
+    let mut truly = 0.0;
+    for row in step.rows.clone() {
+        let visibility = posterior.sight().visibility(witness.cutting, row);
+        for k in 0..CELLS {
+            let by_sight = (witness.detectability - FALSE_SIGHTING) * visibility[k];
+            let falsely = FALSE_SIGHTING * (1.0 - visibility[k]) / (FALSE_SIGHTING + by_sight);
+            truly += step.places[row][k] * (1.0 - falsely);
+        }
+    }
+    truly
 }

@@ -11,6 +11,7 @@
 //! where one of them is seen, not seeing the other says nothing.
 
 mod occlusion;
+mod warp;
 
 use covimap_embed::Point;
 
@@ -28,6 +29,10 @@ pub struct SensorModel {
     pub detectability: f64,
     /// Share of the sightings that are false, in `(0, 1)`.
     pub outliers: f64,
+    /// Standard deviation of a coordinate, `>= 0`, by which the chart as a whole is bent: the same for
+    /// neighbours, and so without effect on what lies where among them. 0 in files that do not tell.
+    #[serde(default)]
+    pub warp: f64,
 }
 
 impl SensorModel {
@@ -40,7 +45,9 @@ impl SensorModel {
     fn is_sound(&self) -> bool {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let share = |value: f64| value > 0.0 && value < 1.0;
-        positive(self.range) && positive(self.edge) && share(self.detectability) && share(self.outliers)
+        let lengths =
+            positive(self.range) && positive(self.edge) && self.warp >= 0.0 && self.warp.is_finite();
+        lengths && share(self.detectability) && share(self.outliers)
     }
 }
 
@@ -141,6 +148,7 @@ impl Sensing {
         for (component, sensor) in (0..).zip(&mut self.sensors) {
             sensor.range *= ratio(component);
             sensor.edge *= ratio(component);
+            sensor.warp *= ratio(component);
         }
         for (deviation, placed) in self.deviation.iter_mut().zip(landmarks) {
             *deviation *= ratio(placed.component);
@@ -187,6 +195,7 @@ pub(crate) fn learn(
                 edge: found.sensor.edge,
                 detectability: found.sensor.detectability,
                 outliers: found.outliers,
+                warp: warp::warp(counts, graph, members, points)?,
             };
             sensors.push(sensor);
             for (place, &member) in members.iter().enumerate() {

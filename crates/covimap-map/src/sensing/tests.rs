@@ -4,7 +4,8 @@ use crate::{Mapper, MapperParams, Method, Silent};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-const SOUND: SensorModel = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3 };
+const SOUND: SensorModel =
+    SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
 
 #[test]
 fn parts_out_of_their_range_are_refused() {

@@ -3,7 +3,7 @@
 //! The map says from where each landmark is seen ([`covimap_map::Sensing`]). A look shows a set `S`; from
 //! a place `y` of a chart it has the probability
 //!
-//! `L(y) = prod_{i in S} (e + q p_i v_i(y)) prod_{j not in S, in sight} (1 - q p_j v_j(y))`  (1)
+//! `L(y) = prod_{i in S} (e + (1 - e) q p_i v_i(y)) prod_{j not in S, in sight} (1 - q p_j v_j(y))`  (1)
 //!
 //! | symbol | meaning |
 //! |---|---|
@@ -14,7 +14,7 @@
 //! | in sight | near, and not occluded from half or more of those seen nearby: not seeing what a wall hides says nothing |
 //!
 //! The prior is uniform over the charts. The posterior may have several *modes*; each has a probability, a
-//! mean and a covariance. Against all places stands one more hypothesis: that the robot is *lost*, at no place of
+//! mean and a covariance, in which the bend of the chart as a whole is contained. Against all places stands one more hypothesis: that the robot is *lost*, at no place of
 //! the map, and sees any landmarks at random, or new ones.
 //!
 //! # Algorithm
@@ -29,6 +29,7 @@
 mod modes;
 mod sight;
 mod surroundings;
+mod tracker;
 
 use std::sync::Arc;
 
@@ -39,6 +40,7 @@ use crate::{MapIndex, PlanError};
 pub use modes::Mode;
 use modes::Patch;
 use surroundings::Surroundings;
+pub use tracker::{TrackParams, Tracker};
 
 /// Share of false sightings that is reckoned with, whatever the log had: the field is harder.
 const FALSE_SHARE: f64 = 0.02;
@@ -58,8 +60,25 @@ const CROWDED: usize = 256;
 pub struct Look {
     /// Landmarks of the map, ascending, each once.
     pub known: Vec<LandmarkId>,
+    /// IDs that several landmarks of the map bear, each with these landmarks.
+    pub copies: Vec<Vec<LandmarkId>>,
     /// IDs that the map does not have, in the order given, each once.
     pub unknown: Vec<String>,
+}
+
+impl Look {
+    /// Number of IDs that the map has.
+    fn ids(&self) -> usize {
+        self.known.len() + self.copies.len()
+    }
+
+    /// Every landmark that may have been seen, ascending.
+    fn candidates(&self) -> Vec<LandmarkId> {
+        let mut all: Vec<LandmarkId> =
+            self.known.iter().chain(self.copies.iter().flatten()).copied().collect();
+        all.sort_unstable();
+        all
+    }
 }
 
 /// Where the robot may be.
@@ -72,7 +91,8 @@ pub struct Location {
     pub lost: f64,
     /// How many of the known landmarks seen can be seen from the best mode.
     pub fits: usize,
-    /// Those that cannot, ascending: false sightings, if the robot is there.
+    /// Those that cannot, ascending: false sightings, if the robot is there. Of an ID that several landmarks bear,
+    /// the first.
     pub misfits: Vec<LandmarkId>,
 }
 
@@ -93,7 +113,8 @@ impl Location {
     /// or none explains more than half of them.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        self.lost > 0.5 || self.misfits.len() >= self.fits
+        let most_misfit = !self.misfits.is_empty() && self.misfits.len() >= self.fits;
+        self.modes.is_empty() || self.lost > 0.5 || most_misfit
     }
 }
 
@@ -128,50 +149,69 @@ impl Localiser {
         &self.index
     }
 
-    /// Reads a look. An ID that is repeated counts once.
+    /// Reads a look. An ID that is repeated counts once. Where the map has `A#1`, `A#2` and so on instead of `A`,
+    /// the look shows one of them.
     pub fn look<'a>(&self, ids: impl IntoIterator<Item = &'a str>) -> Look {
         let mut look = Look::default();
         for id in ids {
             match self.index.lookup(id) {
                 Some(landmark) => look.known.push(landmark),
+                None if self.copies(id).len() > 1 => look.copies.push(self.copies(id)),
                 None if look.unknown.iter().any(|other| other == id) => (),
                 None => look.unknown.push(id.to_owned()),
             }
         }
         look.known.sort_unstable();
         look.known.dedup();
+        look.copies.sort_unstable();
+        look.copies.dedup();
         look
+    }
+
+    /// The landmarks that the map made of an ID which several bear.
+    fn copies(&self, id: &str) -> Vec<LandmarkId> {
+        (1..).map_while(|number| self.index.lookup(&format!("{id}#{number}"))).collect()
     }
 
     /// Where a robot may be that sees this.
     #[must_use]
     pub fn locate(&self, look: &Look) -> Location {
         let mut patches: Vec<Patch> = Vec::new();
-        for (component, middle) in self.crowds(&look.known) {
+        for (component, middle) in self.crowds(&look.candidates()) {
             let sight = self.sight(look, component, middle);
-            let patch = Patch::around(&sight, component, middle, &patches);
+            let warp = self.sensing().sensor(component).warp;
+            let patch = Patch::around(&sight, component, middle, warp, &patches);
             patches.push(patch);
         }
         let best = patches.iter().map(Patch::log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let evidence: f64 = patches.iter().map(|patch| (patch.log_evidence() - best).exp()).sum();
-        let modes = modes::modes(&patches);
-        let lost = self.lost(look, best + evidence.ln() - self.area.ln());
+        self.location(look, modes::modes(&patches), best + evidence.ln() - self.area.ln())
+    }
+
+    /// These modes, by the log of the evidence for being anywhere on the map.
+    fn location(&self, look: &Look, modes: Vec<Mode>, on_map: f64) -> Location {
+        let lost = self.lost(look, on_map);
         let misfits = modes.first().map_or(Vec::new(), |best| self.misfits(look, best));
-        Location { modes, lost, fits: look.known.len() - misfits.len(), misfits }
+        Location { modes, lost, fits: look.ids() - misfits.len(), misfits }
     }
 
     fn misfits(&self, look: &Look, mode: &Mode) -> Vec<LandmarkId> {
         let sight = self.sight(look, mode.component, mode.position);
-        look.known.iter().copied().filter(|&landmark| !sight.explains(landmark, mode.position)).collect()
+        let explains = |landmark: LandmarkId| sight.explains(landmark, mode.position);
+        let copies = look.copies.iter().filter(|copies| !copies.iter().any(|&copy| explains(copy)));
+        let known = look.known.iter().copied().filter(|&landmark| !explains(landmark));
+        let mut misfits: Vec<LandmarkId> = known.chain(copies.map(|copies| copies[0])).collect();
+        misfits.sort_unstable();
+        misfits
     }
 
     /// Probability of being lost, by the log of the evidence for being anywhere on the map.
     fn lost(&self, look: &Look, on_map: f64) -> f64 {
-        let (known, unknown) = (look.known.len() as f64, look.unknown.len() as f64);
+        let (known, unknown) = (look.ids() as f64, look.unknown.len() as f64);
         let any = ((known + unknown).max(1.0) / self.index.map().len().max(1) as f64).min(1.0);
         let lost = LOST.ln() + known * ((1.0 - UNKNOWN[0]) * any).ln() + unknown * UNKNOWN[0].ln();
         let found = (1.0 - LOST).ln() + on_map + known * (1.0 - UNKNOWN[1]).ln() + unknown * UNKNOWN[1].ln();
-        if look.known.is_empty() { 1.0 } else { 1.0 / (1.0 + (found - lost).exp()) }
+        1.0 / (1.0 + (found - lost).exp())
     }
 
     /// Component and middle of every crowd among the landmarks seen, the largest crowd first.
@@ -209,9 +249,9 @@ impl Localiser {
 
     fn sight(&self, look: &Look, component: u32, middle: Point) -> sight::Sight {
         let sensor = self.sensing().sensor(component);
-        let seen = (look.known.len() + look.unknown.len()) as f64;
+        let seen = (look.ids() + look.unknown.len()) as f64;
         let falsely = (sensor.outliers.max(FALSE_SHARE) * seen / self.index.map().len() as f64).min(0.5);
-        sight::Sight::new(&self.surroundings, self.index.map(), &look.known, component, middle, falsely)
+        sight::Sight::new(&self.surroundings, self.index.map(), look, component, middle, falsely)
     }
 
     fn sensing(&self) -> &Sensing {

@@ -1,15 +1,16 @@
 //! The posterior on a grid, coarse first and fine where it matters, and its modes.
 
 use covimap_embed::Point;
+use covimap_map::SensorModel;
 
 use super::sight::{PLACES, Sight};
 
 /// Side of a coarse cell, as a share of the range.
-const COARSE: f64 = 0.2;
+pub(super) const COARSE: f64 = 0.2;
 /// Cells on every axis of the patch, to either side of the middle one.
 const HALF: i32 = 6;
 /// Qualities of a look and their priors.
-const QUALITIES: [(f64, f64); 4] = [(1.0, 0.94), (0.5, 0.03), (0.25, 0.02), (0.1, 0.01)];
+pub(super) const QUALITIES: [(f64, f64); 4] = [(1.0, 0.94), (0.5, 0.03), (0.25, 0.02), (0.1, 0.01)];
 /// Logarithm below the best that a coarse cell may be and still be cut.
 const WORTH_CUTTING: f64 = 10.0;
 /// Fine cells that are taken at most, about.
@@ -43,9 +44,9 @@ impl Mode {
 }
 
 /// A fine cell: column, row, and the logarithm of likelihood times area in squares of the range.
-struct Cell {
-    at: [i32; 2],
-    log: f64,
+pub(super) struct Cell {
+    pub at: [i32; 2],
+    pub log: f64,
 }
 
 /// The posterior around the middle of one crowd.
@@ -53,6 +54,8 @@ pub(super) struct Patch {
     component: u32,
     middle: Point,
     range: f64,
+    /// Standard deviation of the chart's own bend.
+    warp: f64,
     /// Side of a fine cell.
     side: f64,
     /// By column, then row.
@@ -61,7 +64,7 @@ pub(super) struct Patch {
 
 impl Patch {
     /// Takes the posterior; places that lie in one of the patches before belong to that one.
-    pub fn around(sight: &Sight, component: u32, middle: Point, before: &[Self]) -> Self {
+    pub fn around(sight: &Sight, component: u32, middle: Point, warp: f64, before: &[Self]) -> Self {
         let side = COARSE * sight.range;
         let blur = side / 4.0;
         let place = |at: [i32; 2], side: f64| [0, 1].map(|axis| middle[axis] + f64::from(at[axis]) * side);
@@ -101,7 +104,12 @@ impl Patch {
         }
         cells.sort_unstable_by_key(|cell| cell.at);
         let middle = [middle[0] + shift, middle[1] + shift];
-        Self { component, middle, range: sight.range, side: fine, cells }
+        Self { component, middle, range: sight.range, warp, side: fine, cells }
+    }
+
+    /// A posterior that is known already, by cells of a grid over the whole chart.
+    pub fn of_cells(sensor: &SensorModel, component: u32, side: f64, cells: Vec<Cell>) -> Self {
+        Self { component, middle: [0.0; 2], range: sensor.range, warp: sensor.warp, side, cells }
     }
 
     /// Logarithm of the integral of the likelihood over the patch, in squares of the range.
@@ -182,7 +190,7 @@ fn modes_of(patch: &Patch, floor: f64, best: f64) -> Vec<Mode> {
             weighted().map(|(at, w)| w * (at[a] - mean[a]) * (at[b] - mean[b])).sum::<f64>() / mass
         };
         // A cell is no point: it has a spread of its own.
-        let own = patch.side * patch.side / 12.0;
+        let own = patch.side * patch.side / 12.0 + patch.warp * patch.warp;
         Mode {
             probability: mass,
             position: mean,

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use covimap_embed::Point;
 use covimap_map::{GlobalMap, LandmarkId};
 
-use super::distance;
 use super::surroundings::Surroundings;
+use super::{Look, distance};
 
 /// Places further than this from the middle of the neighbourhood, as a share of the range, are not looked
 /// at.
@@ -32,7 +32,7 @@ struct Witness {
 /// A look, ready to be judged from places in one neighbourhood.
 pub(super) struct Sight {
     witnesses: Vec<Witness>,
-    /// Landmarks seen that are not near.
+    /// IDs seen of which no landmark is near.
     elsewhere: usize,
     /// Chance `e` of a false sighting of one landmark.
     falsely: f64,
@@ -45,7 +45,7 @@ impl Sight {
     pub fn new(
         surroundings: &Surroundings,
         map: &GlobalMap,
-        seen: &[LandmarkId],
+        look: &Look,
         component: u32,
         middle: Point,
         falsely: f64,
@@ -57,6 +57,7 @@ impl Sight {
             .around(component, middle, reach)
             .filter(|id| distance(map.landmarks()[id.index()].position, middle) < reach)
             .collect();
+        let seen = look.candidates();
         let is_seen = |id: &LandmarkId| seen.binary_search(id).is_ok();
         let at = |id: LandmarkId| map.landmarks()[id.index()].position;
         let seen_near: Vec<LandmarkId> = near.iter().copied().filter(is_seen).collect();
@@ -84,13 +85,16 @@ impl Sight {
         let mut witnesses: Vec<Witness> =
             near.iter().copied().filter(|id| is_seen(id) || in_sight(*id)).map(witness).collect();
         witnesses.sort_unstable_by_key(|witness| witness.landmark);
-        Self { witnesses, elsewhere: seen.len() - seen_near.len(), falsely, range: sensor.range }
+        // Copies of an ID stand far from each other: one of them is near at most.
+        let elsewhere = look.ids().saturating_sub(seen_near.len());
+        Self { witnesses, elsewhere, falsely, range: sensor.range }
     }
 
     /// `ln L(y)` at a place, for looks of this quality. The edges are softened by `blur` more, so that a
     /// coarse grid misses nothing.
     pub fn log_likelihood(&self, place: Point, quality: f64, blur: f64) -> f64 {
-        let mut log = self.elsewhere as f64 * self.falsely.ln();
+        // A look without a sighting has no false one either.
+        let mut log = if self.elsewhere > 0 { self.elsewhere as f64 * self.falsely.ln() } else { 0.0 };
         let mut product = 1.0;
         for witness in &self.witnesses {
             let chance = quality * self.chance(witness, place, blur);

@@ -4,10 +4,11 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 
-const SENSOR: SensorModel = SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3 };
+pub(super) const SENSOR: SensorModel =
+    SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
 
 /// A map of landmarks at these places of these charts, called by their numbers.
-fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> GlobalMap {
+pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> GlobalMap {
     let ids: Vec<String> = (0..landmarks.len()).map(|i| i.to_string()).collect();
     let names: LandmarkNames = ids.iter().map(String::as_str).collect();
     let placed = |&(component, position): &(u32, Point)| PlacedLandmark {
@@ -30,19 +31,23 @@ fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> 
         .unwrap()
 }
 
-fn localiser(map: GlobalMap) -> Localiser {
+pub(super) fn localiser(map: GlobalMap) -> Localiser {
     Localiser::new(Arc::new(MapIndex::new(Arc::new(map)))).unwrap()
 }
 
 /// `n` landmarks at ten to a square unit in a chart of its own.
-fn hall(n: usize, component: u32) -> Vec<(u32, Point)> {
+pub(super) fn hall(n: usize, component: u32) -> Vec<(u32, Point)> {
     let side = (n as f64 / 10.0).sqrt();
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(component) + 1);
     (0..n).map(|_| (component, [rng.random_range(0.0..side), rng.random_range(0.0..side)])).collect()
 }
 
 /// What a robot at a place sees of landmarks that stand there.
-fn seen_from(place: Point, points: impl Iterator<Item = Point>, rng: &mut ChaCha8Rng) -> Vec<LandmarkId> {
+pub(super) fn seen_from(
+    place: Point,
+    points: impl Iterator<Item = Point>,
+    rng: &mut ChaCha8Rng,
+) -> Vec<LandmarkId> {
     let chance = |point| 0.9 * SENSOR.visibility(distance(point, place));
     (0..)
         .zip(points)
@@ -51,8 +56,8 @@ fn seen_from(place: Point, points: impl Iterator<Item = Point>, rng: &mut ChaCha
         .collect()
 }
 
-fn look(known: &[u32]) -> Look {
-    Look { known: known.iter().copied().map(LandmarkId).collect(), unknown: Vec::new() }
+pub(super) fn look(known: &[u32]) -> Look {
+    Look { known: known.iter().copied().map(LandmarkId).collect(), ..Look::default() }
 }
 
 /// Mean and covariance of the posterior over a fine grid of the whole chart, by eq. (1) and nothing else.
@@ -87,7 +92,7 @@ fn the_posterior_is_that_of_the_obvious_computation() {
         let place = [rng.random_range(0.3..3.2), rng.random_range(0.3..3.2)];
         let known = seen_from(place, landmarks.iter().map(|landmark| landmark.1), &mut rng);
         let (mean, covariance) = brute_force(&landmarks, &known);
-        let location = localiser.locate(&Look { known, unknown: Vec::new() });
+        let location = localiser.locate(&Look { known, ..Look::default() });
         // All modes together: the obvious computation knows of none.
         let got = location
             .modes
@@ -114,7 +119,7 @@ fn the_truth_is_where_the_region_says() {
     for _ in 0..600 {
         let place = [rng.random_range(0.0..6.3), rng.random_range(0.0..6.3)];
         let known = seen_from(place, truth.iter().map(|landmark| landmark.1), &mut rng);
-        let location = localiser.locate(&Look { known, unknown: Vec::new() });
+        let location = localiser.locate(&Look { known, ..Look::default() });
         let Some(best) = location.best() else { continue };
         inside += usize::from(best.squared_distance(place) < 5.99);
         errors.push(distance(best.position, place));
@@ -132,12 +137,12 @@ fn the_chart_is_the_one_whose_landmarks_are_seen() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     let elsewhere = |landmark: &(u32, Point)| if landmark.0 == 1 { landmark.1 } else { [99.0; 2] };
     let known = seen_from([1.5, 1.5], landmarks.iter().map(elsewhere), &mut rng);
-    let location = localiser.locate(&Look { known: known.clone(), unknown: Vec::new() });
+    let location = localiser.locate(&Look { known: known.clone(), ..Look::default() });
     let best = location.best().unwrap();
     assert_eq!(best.component, 1);
     assert!(best.probability > 0.99 && !location.is_lost());
     // One ID of the other chart changes nothing, and is the one that does not fit.
-    let with_one = Look { known: [vec![LandmarkId(7)], known].concat(), unknown: Vec::new() };
+    let with_one = Look { known: [vec![LandmarkId(7)], known].concat(), ..Look::default() };
     let location = localiser.locate(&with_one);
     assert_eq!(location.best().unwrap().component, 1);
     assert_eq!(location.misfits, [LandmarkId(7)]);
@@ -182,7 +187,7 @@ fn ids_that_do_not_go_together_are_lost() {
     known.extend([LandmarkId(3), LandmarkId(400), LandmarkId(790)]);
     known.sort_unstable();
     known.dedup();
-    let location = localiser.locate(&Look { known, unknown: Vec::new() });
+    let location = localiser.locate(&Look { known, ..Look::default() });
     assert!(!location.is_lost(), "{location:?}");
     assert!(distance(location.best().unwrap().position, [4.0, 4.0]) < 0.2);
 }
@@ -199,6 +204,44 @@ fn unknown_ids_are_named_and_weigh_for_being_lost() {
     let nothing = localiser.locate(&localiser.look(["new"]));
     assert!(nothing.is_lost() && nothing.best().is_none() && !nothing.is_ambiguous());
     assert!(localiser.locate(&Look::default()).is_lost());
+}
+
+#[test]
+fn an_id_that_two_landmarks_bear_is_the_one_with_company() {
+    let landmarks = hall(800, 0);
+    let plain = map_of(&landmarks, 0.01, &[]);
+    // The landmarks nearest to two far places are both called A.
+    let nearest = |place: Point| {
+        let away = |i: &usize| distance(landmarks[*i].1, place);
+        (0..800).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap()
+    };
+    let (here, there) = (nearest([2.0, 2.0]), nearest([7.0, 7.0]));
+    let name = |i: usize| match i {
+        i if i == here => "A#1".to_owned(),
+        i if i == there => "A#2".to_owned(),
+        i => i.to_string(),
+    };
+    let ids: Vec<String> = (0..800).map(name).collect();
+    let map = GlobalMap::from_parts(
+        ids.iter().map(String::as_str).collect(),
+        plain.landmarks().to_vec(),
+        MapperParams::default(),
+        plain.report().clone(),
+    );
+    let aliased = localiser(map.unwrap().with_sensing(plain.sensing().unwrap().clone()).unwrap());
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let points = landmarks.iter().map(|landmark| landmark.1);
+    let mut known = seen_from([2.1, 2.0], points, &mut rng);
+    known.push(LandmarkId(here as u32));
+    known.sort_unstable();
+    known.dedup();
+    let seen: Vec<String> = known.iter().map(|id| name(id.index()).replace("A#1", "A")).collect();
+    let read = aliased.look(seen.iter().map(String::as_str));
+    assert_eq!(read.copies, [[LandmarkId(here as u32), LandmarkId(there as u32)]]);
+    let location = aliased.locate(&read);
+    let wanted = localiser(plain).locate(&Look { known, ..Look::default() });
+    assert!(distance(location.best().unwrap().position, wanted.best().unwrap().position) < 1e-9);
+    assert!(location.misfits.is_empty() && !location.is_lost());
 }
 
 #[test]
