@@ -84,7 +84,7 @@ pub fn newton_while(
             damping.raise();
         }
     };
-    Ok(Embedding::new(pairs, points, stress, iterations, termination))
+    Ok(Embedding::of_distances(pairs, points, iterations, termination))
 }
 
 /// `mu` after Levenberg and Marquardt.

@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::Pair;
+use crate::{Pair, raw_stress};
 use crate::eigen::symmetric_eigen;
 use crate::solve::tests::{after, cases, random_problem};
 use crate::stress::distance;
@@ -34,6 +34,17 @@ fn dense_guttman(pairs: &PairDistances, points: &[Point]) -> Vec<Point> {
     solution
 }
 
+/// The factor that brings the points to the size that fits best: `sum w d r / sum w r^2`.
+fn fitting_size(pairs: &PairDistances, points: &[Point]) -> f64 {
+    let (mut fit, mut extent) = (0.0, 0.0);
+    for pair in pairs.pairs() {
+        let r = distance(points[pair.i as usize], points[pair.j as usize]);
+        fit += pair.weight * pair.distance * r;
+        extent += pair.weight * r * r;
+    }
+    fit / extent
+}
+
 proptest! {
     #![proptest_config(cases(64))]
 
@@ -44,10 +55,11 @@ proptest! {
         // All steps but the last are relaxed, and those do not raise the stress either.
         for _ in 1..steps {
             let guttman = dense_guttman(&pairs, &points);
+            let size = fitting_size(&pairs, &points);
             let relaxed: Vec<Point> = guttman
                 .iter()
                 .zip(&points)
-                .map(|(new, old)| [2.0 * new[0] - old[0], 2.0 * new[1] - old[1]])
+                .map(|(new, old)| [2.0 * new[0] - size * old[0], 2.0 * new[1] - size * old[1]])
                 .collect();
             prop_assert!(raw_stress(&pairs, &relaxed) <= raw_stress(&pairs, &points) * (1.0 + 1e-9));
             points = relaxed;
