@@ -151,15 +151,12 @@ impl<'a> Disparities<'a> {
         !matches!(self.rule, Rule::Fixed)
     }
 
-    /// Replaces `disparities` by those that fit `points` best. They stay as they are if nothing
-    /// but zero would fit, as where all objects coincide.
-    pub fn fit(&self, points: &[Point], disparities: &mut Vec<f64>) {
-        let fitted = match &self.rule {
-            Rule::Fixed => return,
-            Rule::Bounds(bounds) => {
-                *disparities = bounds.clip(&self.distances(points));
-                return;
-            }
+    /// Those that fit `points` best; none if what fits is all zero, as where all objects coincide,
+    /// or if they are the dissimilarities anyhow.
+    pub fn fit(&self, points: &[Point]) -> Option<Vec<f64>> {
+        let mut fitted = match &self.rule {
+            Rule::Fixed => return None,
+            Rule::Bounds(bounds) => return Some(bounds.clip(&self.distances(points))),
             Rule::Ordinal(order, Ties::Tertiary) => {
                 non_negative_tertiary(order, &self.distances(points), &self.weights)
             }
@@ -167,10 +164,9 @@ impl<'a> Disparities<'a> {
             Rule::Spline(design) => design.values(&design.nearest(&self.distances(points))),
         };
         let size: f64 = fitted.iter().zip(&self.weights).map(|(e, w)| w * e * e).sum();
-        if size > 0.0 {
-            let factor = (self.size / size).sqrt();
-            disparities.iter_mut().zip(fitted).for_each(|(disparity, e)| *disparity = factor * e);
-        }
+        let factor = (self.size / size).sqrt();
+        fitted.iter_mut().for_each(|disparity| *disparity *= factor);
+        (size > 0.0).then_some(fitted)
     }
 
     fn distances(&self, points: &[Point]) -> Vec<f64> {

@@ -2,10 +2,12 @@
 //!
 //! With `r_ij = |x_i - x_j|` and disparities `e_ij`, a pass yields
 //!
-//! `sigma(X) = sum w_ij (e_ij - r_ij)^2` and `B(X) X`, row i `sum_j (w_ij e_ij / r_ij) (x_i - x_j)`.
+//! `sigma(X) = sum w_ij (e_ij - r_ij)^2` and `G = (V - B(X)) X`, half its gradient:
+//! row i is `sum_j w_ij (1 - e_ij / r_ij) (x_i - x_j)`.
 //!
-//! A pair whose objects coincide pulls in no direction and rests: its term in `B` is zero, which
-//! is a subgradient of its distance, so that majorisation holds.
+//! `G` is summed pair by pair and not as the difference of `V X` and `B(X) X`, which are nearly
+//! equal where a map fits well. A pair whose objects coincide pulls in no direction and rests: its
+//! term is zero, which is a subgradient of its distance, so that majorisation holds.
 //!
 //! Complete lists have their disparities in memory as the rows of a triangle and are worked on
 //! many pairs at a time; other lists go pair by pair and then object by object. Either way the
@@ -23,7 +25,7 @@ use listed::ListedPairs;
 pub(crate) struct Forces {
     /// `sigma(X)`.
     pub stress: f64,
-    /// `B(X) X`.
+    /// `G`.
     pub forces: Vec<Point>,
 }
 

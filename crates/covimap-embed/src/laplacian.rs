@@ -229,7 +229,8 @@ impl Laplacian {
         solution
     }
 
-    fn centre(&self, points: &mut [Point]) {
+    /// Moves every component to the origin.
+    pub fn centre(&self, points: &mut [Point]) {
         let mut centres = vec![[0.0; 2]; self.sizes.len()];
         for (point, &component) in points.iter().zip(&self.component) {
             let centre = &mut centres[component as usize];

@@ -47,7 +47,7 @@ pub use procrustes::{
 };
 pub use shepard::ShepardPoint;
 pub use similarity::Similarity;
-pub use smacof::{ComparedStarts, Scaling, Smacof, smacof};
+pub use smacof::{ComparedStarts, Scaling, Smacof, Steps, smacof};
 pub use solve::{Embedding, StopRule, Termination};
 pub use spline::{MonotoneSpline, MonotoneSplineBasis};
 pub use spring::spring_embedding;

@@ -33,7 +33,7 @@ use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Transformatio
 /// A relocation is taken if it lowers the stress by more than this share.
 const WORTHWHILE: f64 = 1e-6;
 
-/// Minimises the stress of `pairs` from `start` by relaxed steps: [`Smacof`] for plain distances.
+/// Minimises the stress of `pairs` from `start`: [`Smacof`] as it is by default.
 ///
 /// Every connected component of the result is centred at the origin.
 ///
@@ -65,8 +65,8 @@ pub fn smacof(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<
 pub struct Smacof {
     /// What the distances are compared with (default: [`Transformation::Ratio`]).
     pub transformation: Transformation,
-    /// Whether steps go twice as far (default: yes), which about halves their number.
-    pub relax: bool,
+    /// How far the steps go (default: [`Steps::QuasiNewton`]).
+    pub steps: Steps,
     /// Whether starts are maps under this transformation already, as from a run before, so that
     /// their own disparities are fitted at once (default: no). Otherwise the first steps compare
     /// distances with the dissimilarities themselves, which leads from a start that knows nothing
@@ -84,8 +84,22 @@ pub struct Smacof {
 impl Default for Smacof {
     fn default() -> Self {
         let stop = StopRule { max_iterations: 1000, tolerance: 1e-9 };
-        Self { transformation: Transformation::Ratio, relax: true, warm: false, relocations: 0, stop }
+        let (transformation, steps) = (Transformation::default(), Steps::default());
+        Self { transformation, steps, warm: false, relocations: 0, stop }
     }
+}
+
+/// How far a step goes. None raises the stress, and all take one solve with `V`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Steps {
+    /// To the Guttman transform `X+`, as in scikit-learn and R's smacof.
+    Plain,
+    /// About twice as far, which about halves the number of steps.
+    Relaxed,
+    /// Along the direction, and as far, as the last steps suggest; to `X+` where that fails. A
+    /// fifth of the plain steps is usual, far fewer where a map bends easily.
+    #[default]
+    QuasiNewton,
 }
 
 /// A map with what its distances were compared with.
@@ -208,11 +222,10 @@ impl Smacof {
 
 impl Scaling {
     fn new(pairs: &PairDistances, solved: Majorised) -> Self {
-        let Majorised { points, disparities, mut trace, iterations, termination } = solved;
+        let Majorised { points, disparities, mut trace, termination } = solved;
         let sums = FitSums::new(pairs, |k| disparities[k], &points);
-        if iterations > 0 {
-            trace.push(sums.residual);
-        }
+        let iterations = trace.len() - 1;
+        trace[iterations] = sums.residual;
         let embedding = Embedding::new(points, sums, iterations, termination);
         Self { embedding, disparities, trace }
     }

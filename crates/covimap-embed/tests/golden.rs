@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use covimap_embed::{
     Correspondence, DissimilarityOrder, Embedding, Pair, PairBounds, PairDistances, Point, ProcrustesOptions,
-    Smacof, StopRule, Ties, Transformation, procrustes, random_starts, torgerson_start,
+    Smacof, Steps, StopRule, Ties, Transformation, procrustes, random_starts, torgerson_start,
 };
 
 /// Ours may be above theirs by this share.
@@ -160,7 +160,7 @@ fn plain_steps_are_those_of_scikit_learn() {
     for row in metric {
         let Problem { pairs, starts, .. } = problem(&row[0]);
         let stop = StopRule { max_iterations: row[5].parse().unwrap(), tolerance: 0.0 };
-        let how = Smacof { relax: false, stop, ..Smacof::default() };
+        let how = Smacof { steps: Steps::Plain, stop, ..Smacof::default() };
         let start: usize = row[2].parse().unwrap();
         let ours = how.from_start(&pairs, &starts[start]).unwrap().embedding;
         assert!((ours.stress / number(&row[3]) - 1.0).abs() < 1e-9, "{row:?}: {}", ours.stress);

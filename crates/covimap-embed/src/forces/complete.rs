@@ -195,7 +195,7 @@ impl Row {
             let r = (dx * dx + dy * dy).sqrt();
             let miss = r - e[k];
             self.stress[k] += w[k] * miss * miss;
-            let pull = if r > 0.0 { w[k] * e[k] / r } else { 0.0 };
+            let pull = if r > 0.0 { w[k] * miss / r } else { 0.0 };
             let (px, py) = (pull * dx, pull * dy);
             self.x[k] += px;
             self.y[k] += py;

@@ -20,7 +20,7 @@ impl<'a> ListedPairs<'a> {
         Self { pairs, incidence: Incidence::new(pairs) }
     }
 
-    /// Pair by pair `w e / r`, then object by object the sum over its pairs: no two tasks write to
+    /// Pair by pair `w (1 - e / r)`, then object by object the sum over its pairs: no two tasks write to
     /// one place, and no pair is measured twice.
     pub fn forces(&self, points: &[Point], disparities: &[f64]) -> Forces {
         let mut pulls = vec![0.0; disparities.len()];
@@ -36,7 +36,7 @@ impl<'a> ListedPairs<'a> {
                     let r = distance(points[pair.i as usize], points[pair.j as usize]);
                     let miss = r - disparity;
                     stress += pair.weight * miss * miss;
-                    *pull = if r > 0.0 { pair.weight * disparity / r } else { 0.0 };
+                    *pull = if r > 0.0 { pair.weight * miss / r } else { 0.0 };
                 }
                 stress
             })

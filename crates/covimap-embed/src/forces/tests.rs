@@ -35,7 +35,7 @@ fn oracle(pairs: &PairDistances, points: &[Point], disparities: &[f64]) -> Force
         let r = distance(points[i], points[j]);
         sums.stress += pair.weight * (e - r).powi(2);
         if r > 0.0 {
-            let pull = pair.weight * e / r;
+            let pull = pair.weight * (1.0 - e / r);
             let [x, y] = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
             for (object, sign) in [(i, pull), (j, -pull)] {
                 let sum = &mut sums.forces[object];
@@ -71,14 +71,14 @@ proptest! {
 #[test]
 fn worked_by_hand() {
     // A triangle with legs 3 and 4, disparities 2, 4 and 6, weights 1, 5 and 0.5:
-    // stress 1 (3-2)^2 + 5 (4-4)^2 + 0.5 (5-6)^2 = 1.5, pulls w e / r = 2/3, 5 and 0.6.
+    // stress 1 (3-2)^2 + 5 (4-4)^2 + 0.5 (5-6)^2 = 1.5, pulls w (1 - e / r) = 1/3, 0 and -0.1.
     let pair = |i, j, weight| Pair { i, j, distance: 1.0, weight };
     let pairs = PairDistances::new(3, vec![pair(0, 1, 1.0), pair(0, 2, 5.0), pair(1, 2, 0.5)]).unwrap();
     let points = [[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]];
     let found = PairLayout::new(&pairs).forces(&points, &[2.0, 4.0, 6.0]);
     assert!((found.stress - 1.5).abs() < 1e-15);
-    // On 0: 2/3 (-3, 0) + 5 (0, -4); on 1: 2/3 (3, 0) + 0.6 (3, -4); on 2 the rest.
-    let expected = [[-2.0, -20.0], [3.8, -2.4], [-1.8, 22.4]];
+    // On 0: 1/3 (-3, 0); on 1: 1/3 (3, 0) - 0.1 (3, -4); on 2: -0.1 (-3, 4).
+    let expected = [[-1.0, 0.0], [0.7, 0.4], [0.3, -0.4]];
     for (found, expected) in found.forces.iter().flatten().zip(expected.iter().flatten()) {
         assert!((found - expected).abs() < 1e-14);
     }

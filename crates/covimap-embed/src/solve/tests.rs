@@ -266,15 +266,3 @@ fn the_same_bits_on_one_thread_and_on_three() {
         assert_eq!(run(1), run(3), "{name}");
     }
 }
-
-#[test]
-fn zz_trace() {
-    let (pairs, start) = random_problem(20, 5);
-    for relax in [true, false] {
-    let how = crate::Smacof { relax, stop: StopRule { max_iterations: 20_000, tolerance: 1e-6 }, ..Default::default() };
-    let s = how.from_start(&pairs, &start).unwrap();
-    let t = &s.trace;
-    println!("{} {:?} {}", t.len(), s.embedding.termination, s.embedding.stress);
-    for k in [0,1,2,3,4,5,10,20,30,50,100,200,400,800,1600,3200,6400,12800,19990,19991,19992] { if k+1 < t.len() { println!("{k} {:e} {:e}", t[k], (t[k]-t[k+1])/t[k]); } }
-    }
-}
