@@ -105,8 +105,8 @@ impl Rival {
 fn no_stress_is_above_theirs_from_the_same_start() {
     // Starts from which theirs ends in a lower minimum. One that no longer does fails as well.
     let known = [
+        ("five_dimensions", "scikit-learn nonmetric", 3),
         ("five_dimensions", "isoMDS primary", 8),
-        ("five_dimensions", "monoMDS interval", 1),
         ("five_dimensions", "monoMDS interval", 9),
         ("marks", "monoMDS interval", 4),
     ];
