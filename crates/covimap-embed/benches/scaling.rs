@@ -6,8 +6,8 @@
 use std::hint::black_box;
 
 use covimap_embed::{
-    DissimilarityOrder, Point, Smacof, Steps, StopRule, Ties, Transformation, isotonic_regression, procrustes,
-    random_starts, torgerson_start,
+    DissimilarityOrder, Point, Smacof, Steps, StopRule, Ties, Transformation, isotonic_regression,
+    procrustes, random_starts, torgerson_start,
 };
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng};
@@ -42,9 +42,12 @@ fn majorisation(criterion: &mut Criterion) {
     let (pairs, start) = neighbours();
     for steps_taken in [Steps::Plain, Steps::Relaxed, Steps::QuasiNewton] {
         let how = Smacof { steps: steps_taken, stop: steps(100), ..Smacof::default() };
-        group.bench_function(BenchmarkId::new("ten neighbours, 100000", format!("{steps_taken:?}")), |bencher| {
-            bencher.iter(|| how.from_start(black_box(&pairs), &start).expect("a start that fits"));
-        });
+        group.bench_function(
+            BenchmarkId::new("ten neighbours, 100000", format!("{steps_taken:?}")),
+            |bencher| {
+                bencher.iter(|| how.from_start(black_box(&pairs), &start).expect("a start that fits"));
+            },
+        );
     }
 }
 

@@ -151,7 +151,9 @@ impl Smacof {
     /// # Ok::<(), covimap_embed::EmbedError>(())
     /// ```
     pub fn from_start(&self, pairs: &PairDistances, start: &[Point]) -> Result<Scaling, EmbedError> {
-        self.solve(&Majoriser::new(pairs, self)?, pairs, start)
+        // All of it on one thread of the pool: to hand over single steps would cost more than small
+        // ones take.
+        rayon::scope(|_| self.solve(&Majoriser::new(pairs, self)?, pairs, start))
     }
 
     /// Minimises the stress from each start and keeps the best.

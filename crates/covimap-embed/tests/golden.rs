@@ -101,32 +101,50 @@ impl Rival {
     }
 }
 
+/// Ways to run from one start: the one by default, then those that may lead to other minima.
+fn ways(transformation: &Transformation) -> Vec<Smacof> {
+    let stop = StopRule { max_iterations: 100_000, tolerance: 1e-14 };
+    let way = |(steps, warm)| {
+        let transformation = transformation.clone();
+        Smacof { transformation, steps, warm, relocations: 30, stop }
+    };
+    let kinds = [Steps::QuasiNewton, Steps::Relaxed, Steps::Plain];
+    kinds.into_iter().flat_map(|steps| [(steps, false), (steps, true)]).map(way).collect()
+}
+
 #[test]
 fn no_stress_is_above_theirs_from_the_same_start() {
-    // Starts from which theirs ends in a lower minimum. One that no longer does fails as well.
+    // Starts from which the first way ends in a poorer minimum than theirs, and another does not.
     let known = [
         ("five_dimensions", "scikit-learn nonmetric", 3),
         ("five_dimensions", "isoMDS primary", 8),
         ("five_dimensions", "monoMDS interval", 9),
         ("marks", "monoMDS interval", 4),
     ];
-    let stop = StopRule { max_iterations: 100_000, tolerance: 1e-14 };
+    println!("| problem | method | ours below | alike | ours above, first way | largest excess |");
     let mut compared = 0;
     for rival in rivals() {
         let problem = problem(&rival.problem);
-        let how = Smacof {
-            transformation: rival.transformation(&problem),
-            relocations: 30,
-            stop,
-            ..Smacof::default()
-        };
+        let ways = ways(&rival.transformation(&problem));
+        let mut count = [0; 3];
+        let mut excess = f64::NEG_INFINITY;
         for (start, (points, theirs)) in problem.starts.iter().zip(&rival.stresses).enumerate() {
-            let ours = rival.measure(&how.from_start(&problem.pairs, points).unwrap().embedding);
-            let above = ours > theirs * (1.0 + SLACK);
-            let expected = known.contains(&(rival.problem.as_str(), rival.method.as_str(), start));
-            assert_eq!(above, expected, "{} {} {start}: {ours} {theirs}", rival.problem, rival.method);
+            let ratio = |way: &Smacof| {
+                let ours = rival.measure(&way.from_start(&problem.pairs, points).unwrap().embedding);
+                ours / theirs - 1.0
+            };
+            let first = ratio(&ways[0]);
+            count[usize::from(first > -SLACK) + usize::from(first > SLACK)] += 1;
+            let least =
+                ways[1..].iter().fold(first, |best, way| if best > SLACK { ratio(way) } else { best });
+            excess = excess.max(least);
+            let case = (rival.problem.as_str(), rival.method.as_str(), start);
+            assert!(least <= SLACK, "{case:?}: {least} above");
+            assert_eq!(first > SLACK, known.contains(&case), "{case:?}: {first} above");
             compared += 1;
         }
+        let [below, alike, above] = count;
+        println!("| {} | {} | {below} | {alike} | {above} | {excess:.0e} |", rival.problem, rival.method);
     }
     // Six complete problems by six methods, less one, and two others: 37 times 11 starts.
     assert_eq!(compared, 37 * 11);

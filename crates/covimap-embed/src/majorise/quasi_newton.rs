@@ -89,8 +89,11 @@ impl QuasiNewton {
 
     /// Remembers what the last step, of whatever kind, tells of the curvature.
     fn learn(&mut self, state: &State, scaled: &[Point]) {
-        let here =
-            Gradient { points: state.points.clone(), gradient: state.gradient.clone(), scaled: scaled.to_vec() };
+        let here = Gradient {
+            points: state.points.clone(),
+            gradient: state.gradient.clone(),
+            scaled: scaled.to_vec(),
+        };
         if let Some(before) = self.last.replace(here) {
             let s = moved(&state.points, &before.points, -1.0);
             let y = moved(&state.gradient, &before.gradient, -1.0);

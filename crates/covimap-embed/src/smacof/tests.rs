@@ -1,10 +1,10 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::{Pair, raw_stress};
 use crate::eigen::symmetric_eigen;
 use crate::solve::tests::{after, cases, random_problem};
 use crate::stress::distance;
+use crate::{Pair, raw_stress};
 
 /// The Guttman transform `V^+ B(X) X` with dense matrices and the pseudo-inverse by eigenvalues.
 fn dense_guttman(pairs: &PairDistances, points: &[Point]) -> Vec<Point> {
