@@ -139,3 +139,85 @@ fn dot(a: &[Point], b: &[Point]) -> f64 {
     let sum = a.iter().zip(b).fold([0.0; 2], |sum, (a, b)| [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]);
     sum[0] + sum[1]
 }
+
+#[cfg(test)]
+mod tests {
+    use std::rc::Rc;
+
+    use super::*;
+
+    /// A state of the stress `sum k x_k^2` over the coordinates, half of whose gradient is `k x_k`.
+    fn bowl(points: Vec<Point>) -> State {
+        let curvature = |k: usize, axis: usize| (2 * k + axis + 1) as f64;
+        let at = |k: usize, p: &Point| [curvature(k, 0) * p[0], curvature(k, 1) * p[1]];
+        let gradient: Vec<Point> = points.iter().enumerate().map(|(k, p)| at(k, p)).collect();
+        State { stress: dot(&points, &gradient), points, gradient, disparities: Rc::new(vec![]) }
+    }
+
+    /// With `V = 5`.
+    fn scaled(gradient: &[Point]) -> Vec<Point> {
+        gradient.iter().map(|g| g.map(|x| x / 5.0)).collect()
+    }
+
+    #[test]
+    fn nothing_is_known_before_the_second_state() {
+        let start = bowl(vec![[1.0, 1.0], [1.0, -1.0]]);
+        let mut steps = QuasiNewton::default();
+        assert!(steps.step(&start, &scaled(&start.gradient), bowl).is_none());
+        assert!(steps.memory.is_empty());
+    }
+
+    #[test]
+    fn the_last_step_is_what_its_change_of_gradient_asks_for() {
+        // The secant equation H y = s of the newest pair.
+        let mut steps = QuasiNewton::default();
+        for points in [[[3.0, 1.0], [1.0, -1.0]], [[2.0, 0.5], [0.0, -1.5]], [[1.0, 0.25], [-0.5, 0.5]]] {
+            let state = bowl(points.to_vec());
+            steps.learn(&state, &scaled(&state.gradient));
+        }
+        assert_eq!(steps.memory.len(), 2);
+        let newest = &steps.memory[0];
+        let direction = steps.direction(&newest.y, &newest.scaled).unwrap();
+        for (found, s) in direction.iter().flatten().zip(newest.s.iter().flatten()) {
+            assert!((found + s).abs() < 1e-12, "{found} for {}", -s);
+        }
+    }
+
+    #[test]
+    fn a_quadratic_is_solved_in_a_few_steps() {
+        let mut steps = QuasiNewton::default();
+        let mut state = bowl(vec![[3.0, 1.0], [1.0, -1.0]]);
+        for _ in 0..12 {
+            let scaled = scaled(&state.gradient);
+            let next = steps.step(&state, &scaled, bowl);
+            state = next.unwrap_or_else(|| bowl(moved(&state.points, &scaled, -1.0)));
+        }
+        assert!(state.stress < 1e-12, "{}", state.stress);
+    }
+
+    #[test]
+    fn a_step_that_never_gains_is_not_taken_and_forgets_all() {
+        let mut steps = QuasiNewton::default();
+        let [first, second] =
+            [[[3.0, 1.0], [1.0, -1.0]], [[2.0, 0.5], [0.5, -0.5]]].map(|p| bowl(p.to_vec()));
+        steps.learn(&first, &scaled(&first.gradient));
+        let tried = std::cell::Cell::new(0);
+        let worse = |points| {
+            tried.set(tried.get() + 1);
+            State { stress: 1e9, ..bowl(points) }
+        };
+        assert!(steps.step(&second, &scaled(&second.gradient), worse).is_none());
+        assert_eq!((tried.get(), steps.memory.len()), (TRIALS, 0));
+    }
+
+    #[test]
+    fn a_hollow_is_not_remembered() {
+        // Between the states the gradient turned against the step.
+        let mut steps = QuasiNewton::default();
+        let first = bowl(vec![[1.0, 1.0]]);
+        let second = State { gradient: vec![[5.0, 5.0]], ..bowl(vec![[0.5, 0.5]]) };
+        steps.learn(&first, &scaled(&first.gradient));
+        steps.learn(&second, &scaled(&second.gradient));
+        assert!(steps.memory.is_empty());
+    }
+}
