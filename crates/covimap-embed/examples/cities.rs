@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{name:<16}{x:>9.0}{y:>9.0}{:>12.1}", 100.0 * misfit / embedding.stress);
     }
 
-    // Roads go round the sea: the worst pairs are farther by road than on any map.
+    // Where the table and any map disagree most: ferries that it takes for roads, and likely misprints.
     let mut diagram = scaling.shepard(&pairs);
     diagram.sort_by(|a, b| (b.distance - b.disparity).abs().total_cmp(&(a.distance - a.disparity).abs()));
     println!("\nworst pairs: road and map / km");

@@ -1,22 +1,19 @@
-//! A map from words: of each two places only how far apart they feel is known.
+//! A map of a town from the times that buses take.
 //!
 //! `cargo run --release -p covimap-embed --example non_metric`
 //!
-//! Travellers call a trip "next door", "near", "a way", "far" or "the other end". The words are in
-//! order and say nothing more: nobody knows how much longer "far" is than "near". Scaling that
-//! takes their numbers 1 to 5 for distances is compared with ordinal scaling, which takes their
-//! order only, and which ties may break up or not.
+//! Longer trips take longer, but not in proportion: everybody waits for the bus, and it is faster
+//! out of town. How much is not known. Scaling that takes minutes for distances bends the map;
+//! ordinal scaling takes their order only, and a spline finds the curve.
 
 use covimap_embed::{
     Correspondence, Pair, PairDistances, Point, ProcrustesOptions, Smacof, Ties, Transformation, procrustes,
     random_starts, torgerson_start,
 };
 
-/// Up to which distance in kilometres each word but the last is used.
-const WORDS: [(&str, f64); 4] = [("next door", 0.6), ("near", 1.6), ("a way", 2.4), ("far", 6.0)];
-
-fn word(distance: f64) -> usize {
-    WORDS.iter().take_while(|(_, up_to)| distance > *up_to).count()
+/// Minutes from place to place, in whole numbers: there are ties.
+fn minutes(kilometres: f64) -> f64 {
+    (25.0 * kilometres.powf(0.4)).round()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -30,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ends = (0..town.len()).flat_map(|i| (i + 1..town.len()).map(move |j| (i, j)));
     let pair = |(i, j): (usize, usize)| {
         let distance = (town[i][0] - town[j][0]).hypot(town[i][1] - town[j][1]);
-        Pair { i: i as u32, j: j as u32, distance: (1 + word(distance)) as f64, weight: 1.0 }
+        Pair { i: i as u32, j: j as u32, distance: minutes(distance), weight: 1.0 }
     };
     let pairs = PairDistances::new(town.len(), ends.map(pair).collect())?;
 
@@ -39,10 +36,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     starts.push(torgerson_start(&pairs)?);
     println!("{:<22}{:>10}{:>16}", "", "stress-1", "error / km");
     for (name, transformation) in [
-        ("numbers of the words", Transformation::Ratio),
+        ("minutes", Transformation::Ratio),
         ("interval", Transformation::Interval),
         ("ordinal, ties kept", Transformation::Ordinal(Ties::Secondary)),
         ("ordinal, ties free", Transformation::Ordinal(Ties::Primary)),
+        ("spline", Transformation::MSpline { degree: 2, interior_knots: 2 }),
     ] {
         let how = Smacof { transformation, relocations: 5, ..Smacof::default() };
         let best = how.from_starts(&pairs, &starts)?.best.embedding;
