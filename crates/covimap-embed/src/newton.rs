@@ -1,32 +1,52 @@
-//! Damped Newton steps on the stress, for configurations that are right but for a smooth bend.
+//! Newton-like descent of the stress, for configurations that are right but for a smooth bend.
 //!
 //! Majorisation measures a step by `V`, in which turning one half of a long corridor against the
 //! other is expensive although it changes no known distance; it needs a number of steps that
-//! grows with the square of the length. Newton's quadratic knows which distances a move really
-//! changes. Per pair, with `u = (x_i - x_j) / r`, the second derivative is
-//! `w [u u' + (1 - d/r) (I - u u')]`; the second term is negative for pairs that are too short
-//! and is dropped there, which keeps the sum positive semidefinite. Damping adds
-//! `mu V (x) I`, so that a large `mu` gives (short) majorisation steps:
+//! grows with the square of the length. The second derivative knows which distances a move really
+//! changes. Per pair, with `u = (x_i - x_j) / r`, it is `w [u u' + (1 - d/r) (I - u u')]`; the
+//! second term is negative for pairs that are too short and is dropped there, which keeps the sum
+//! positive semidefinite. Damping adds `mu V (x) I`:
 //!
-//! `(H + mu V (x) I) s = -g`, `mu` after Levenberg and Marquardt from the ratio of the real to
-//! the promised decrease.
+//! `M = H + mu V (x) I`. (1)
+//!
+//! With noisy distances the dropped terms nearly cancel those kept, so that `M` is too stiff for
+//! just the slow bends that are to be taken out: a step falls short by a factor of five or more.
+//! Steps along `-M^-1 g` are therefore only the first approximation. What the last few steps did
+//! to the gradient corrects it (the limited-memory BFGS recursion over `M^-1`, [`memory`]), and
+//! `M` itself is factored anew only when the configuration has moved far or the steps gain
+//! nothing any more: a factor serves some twenty steps, each of which costs one solve.
 //!
 //! # Complexity
-//! A sparse Cholesky factorisation of order `2 n` a step; the ordering is found once.
+//! A sparse Cholesky factorisation of order `2 n` for every twenty steps or so; the ordering is
+//! found once. A step is a solve and a few looks at the stress.
+//!
+//! # References
+//! J. Nocedal, "Updating quasi-Newton matrices with limited storage", Math. Comp. 35, 1980;
+//! J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., 2006, algorithms 7.4 and 3.1.
 
-use crate::laplacian::{Factored, LowerTriangle, components};
+mod memory;
+mod normal_equations;
+
 use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
+use memory::{Memory, dot};
+use normal_equations::NormalEquations;
 
-/// Damping of the first step: starts are near enough for bold ones.
+/// Damping of the first factor; each later one has a tenth of the last.
 const FIRST_DAMPING: f64 = 1e-2;
-/// Damping below which steps are plain Newton steps for all purposes.
-const LEAST_DAMPING: f64 = 1e-9;
-/// Damping above which no decrease is to be hoped for.
-const MOST_DAMPING: f64 = 1e9;
+/// Least damping: landmarks that their pairs hold in one direction only must not fly off.
+const LEAST_DAMPING: f64 = 1e-4;
+/// Steps that a factor serves.
+const LIFETIME: usize = 20;
+/// Share of the stress that a step must take away for the configuration to have moved far.
+const FAR: f64 = 1e-2;
+/// Share of the decrease promised by the slope that a step must keep (Armijo's condition).
+const KEPT: f64 = 1e-4;
+/// Shortenings of a step before it is given up: by then it is below rounding.
+const SHORTENINGS: usize = 20;
 
-/// Minimises the stress of `pairs` from `start` by damped Newton steps.
+/// Minimises the stress of `pairs` from `start`.
 ///
 /// Every connected component stays about where its start was. Objects that coincide at the start
 /// rest on each other as in [`smacof`](crate::smacof()).
@@ -51,14 +71,12 @@ pub fn newton_while(
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Embedding, EmbedError> {
     check_start(pairs, start)?;
-    let mut points = start.to_vec();
-    let mut stress = raw_stress(pairs, &points);
-    let mut system = NormalEquations::new(pairs);
-    let mut damping = Damping(FIRST_DAMPING);
     let negligible = negligible_stress(pairs);
+    let mut here = Configuration::new(pairs, start.to_vec());
+    let mut model = Model::new(pairs);
     let mut iterations = 0;
     let termination = loop {
-        if stress <= negligible || damping.hopeless() {
+        if here.stress <= negligible {
             break Termination::Converged;
         }
         if iterations == stop.max_iterations {
@@ -68,166 +86,133 @@ pub fn newton_while(
             break Termination::Interrupted;
         }
         iterations += 1;
-        let Step { moved, promised } = system.step(pairs, &points, damping.0)?;
-        let moved_stress = raw_stress(pairs, &moved);
-        let gained = stress - moved_stress;
-        // Written so that a NaN counts as a failed step.
-        if gained >= 0.0 {
-            let done = gained <= stop.tolerance * stress && damping.0 < 1.0;
-            points = moved;
-            stress = moved_stress;
-            if done {
+        model.refresh(pairs, &here)?;
+        let gained = match descend(pairs, &here, &model.direction(&here)) {
+            Some((next, step)) => {
+                let gained = here.stress - next.stress;
+                model.learn(step, &here, &next);
+                here = next;
+                gained
+            }
+            None => 0.0,
+        };
+        // That an aged model gains nothing may be the fault of the model.
+        if gained <= stop.tolerance * here.stress {
+            if model.age <= 1 {
                 break Termination::Converged;
             }
-            damping.adapt(gained / promised);
-        } else {
-            damping.raise();
+            model.expire();
+        } else if gained > FAR * here.stress {
+            model.expire();
         }
     };
-    Ok(Embedding::of_distances(pairs, points, iterations, termination))
+    Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
 }
 
-/// `mu` after Levenberg and Marquardt.
-struct Damping(f64);
+/// A configuration with its stress and the gradient of half of it.
+struct Configuration {
+    points: Vec<Point>,
+    stress: f64,
+    gradient: Vec<f64>,
+}
 
-impl Damping {
-    /// After a step that kept this share of its promise.
-    fn adapt(&mut self, kept: f64) {
-        let factor = match kept {
-            good if good > 0.7 => 0.1,
-            poor if poor < 0.2 => 4.0,
-            _ => 0.5,
-        };
-        self.0 = (self.0 * factor).max(LEAST_DAMPING);
-    }
-
-    /// After a step that would have raised the stress.
-    fn raise(&mut self) {
-        self.0 *= 10.0;
-    }
-
-    /// Whether steps are so short that rounding hides what they gain.
-    fn hopeless(&self) -> bool {
-        self.0 > MOST_DAMPING
+impl Configuration {
+    fn new(pairs: &PairDistances, points: Vec<Point>) -> Self {
+        Self { stress: raw_stress(pairs, &points), gradient: half_gradient(pairs, &points), points }
     }
 }
 
-/// A step that is not taken yet.
-struct Step {
-    moved: Vec<Point>,
-    /// Decrease of the stress that the damped quadratic promises.
-    promised: f64,
+/// What is known of the curvature around the present configuration.
+struct Model {
+    system: NormalEquations,
+    memory: Memory,
+    /// Damping of the next factor.
+    damping: f64,
+    /// Steps taken with the present factor; from [`LIFETIME`] on it is to be renewed.
+    age: usize,
 }
 
-/// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
-struct NormalEquations {
-    matrix: LowerTriangle,
-    /// First entry of the 2 x 2 block of each pair: columns `2i` and `2i + 1`, rows `2j`, `2j + 1`.
-    block_of_pair: Vec<[usize; 2]>,
-    /// One object of each component, tied down against shifts.
-    tied: Vec<bool>,
-    /// The factor of the last step, whose ordering serves the next.
-    factored: Option<Factored>,
-}
-
-impl NormalEquations {
+impl Model {
     fn new(pairs: &PairDistances) -> Self {
-        let n = pairs.objects();
-        let (component, sizes) = components(n, pairs.pairs().iter().map(|pair| (pair.i, pair.j)));
-        let mut tied = vec![false; n];
-        let mut seen = vec![false; sizes.len()];
-        for (node, &c) in component.iter().enumerate() {
-            tied[node] = !std::mem::replace(&mut seen[c as usize], true);
-        }
-        let mut upper = vec![0; n];
-        for pair in pairs.pairs() {
-            upper[pair.i as usize] += 1;
-        }
-        let mut starts = vec![0];
-        let mut rows = Vec::with_capacity(3 * n + 4 * pairs.pairs().len());
-        let mut block_of_pair = Vec::with_capacity(pairs.pairs().len());
-        let mut at = 0;
-        for (i, &count) in upper.iter().enumerate() {
-            let own = &pairs.pairs()[at..at + count];
-            at += count;
-            let first = rows.len();
-            rows.extend([2 * i, 2 * i + 1]);
-            rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
-            starts.push(rows.len());
-            let second = rows.len();
-            rows.push(2 * i + 1);
-            rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
-            starts.push(rows.len());
-            block_of_pair.extend((0..own.len()).map(|k| [first + 2 + 2 * k, second + 1 + 2 * k]));
-        }
-        let values = vec![0.0; rows.len()];
-        Self { matrix: LowerTriangle { starts, rows, values }, block_of_pair, tied, factored: None }
+        let system = NormalEquations::new(pairs);
+        Self { system, memory: Memory::default(), damping: FIRST_DAMPING, age: LIFETIME }
     }
 
-    /// Solves for the step from `points`.
-    fn step(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) -> Result<Step, EmbedError> {
-        let gradient = self.assemble(pairs, points, damping);
-        let factored = match self.factored.take() {
-            None => Factored::new(&self.matrix),
-            Some(last) => last.refactor(&self.matrix),
-        }?;
-        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
-        factored.solve(&mut step, 1);
-        self.factored = Some(factored);
-        // The quadratic of half the stress falls by -g's / 2, that of the stress by twice that.
-        let promised = gradient.iter().zip(&step).map(|(g, s)| -g * s).sum();
-        let moved =
-            points.iter().zip(step.chunks_exact(2)).map(|(p, s)| [p[0] + s[0], p[1] + s[1]]).collect();
-        Ok(Step { moved, promised })
+    /// Renews the factor if its time is over.
+    fn refresh(&mut self, pairs: &PairDistances, here: &Configuration) -> Result<(), EmbedError> {
+        if self.age >= LIFETIME {
+            self.system.factor(pairs, &here.points, self.damping)?;
+            self.damping = (self.damping / 10.0).max(LEAST_DAMPING);
+            self.memory.clear();
+            self.age = 0;
+        }
+        Ok(())
     }
 
-    /// Fills the matrix and returns the gradient of half the stress.
-    fn assemble(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) -> Vec<f64> {
-        let n = points.len();
-        let values = &mut self.matrix.values;
-        let starts = &self.matrix.starts;
-        values.fill(0.0);
-        let mut gradient = vec![0.0; 2 * n];
-        for (pair, block) in pairs.pairs().iter().zip(&self.block_of_pair) {
-            let (i, j) = (pair.i as usize, pair.j as usize);
-            let d = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
-            let r = d[0].hypot(d[1]);
-            let (u, ratio) =
-                if r > 0.0 { ([d[0] / r, d[1] / r], pair.distance / r) } else { ([0.0; 2], 1.0) };
-            let across = (1.0 - ratio).max(0.0);
-            let along = 1.0 - across;
-            let k = |a: usize, b: usize| {
-                pair.weight * (along * u[a] * u[b] + if a == b { across + damping } else { 0.0 })
-            };
-            for object in [i, j] {
-                values[starts[2 * object]] += k(0, 0);
-                values[starts[2 * object] + 1] += k(0, 1);
-                values[starts[2 * object + 1]] += k(1, 1);
-            }
-            values[block[0]] = -k(0, 0);
-            values[block[0] + 1] = -k(0, 1);
-            values[block[1]] = -k(0, 1);
-            values[block[1] + 1] = -k(1, 1);
-            for axis in 0..2 {
-                let pull = pair.weight * (r - pair.distance) * u[axis];
-                gradient[2 * i + axis] += pull;
-                gradient[2 * j + axis] -= pull;
-            }
-        }
-        for object in 0..n {
-            let (x, y) = (starts[2 * object], starts[2 * object + 1]);
-            // Against the free turn of the whole (a relative nudge), and for objects without a pair.
-            let nudge = 1e-9 * (values[x] + values[y]);
-            let tie = if self.tied[object] {
-                values[x] + values[y] + f64::from(u8::from(values[x] <= 0.0))
-            } else {
-                0.0
-            };
-            values[x] += nudge + tie;
-            values[y] += nudge + tie;
-        }
-        gradient
+    fn expire(&mut self) {
+        self.age = LIFETIME;
     }
+
+    fn direction(&self, here: &Configuration) -> Vec<f64> {
+        let downhill = here.gradient.iter().map(|g| -g).collect();
+        self.memory.apply(downhill, |v| self.system.solve(v))
+    }
+
+    fn learn(&mut self, step: Vec<f64>, before: &Configuration, after: &Configuration) {
+        let change = after.gradient.iter().zip(&before.gradient).map(|(a, b)| a - b).collect();
+        self.memory.remember(step, change);
+        self.age += 1;
+    }
+}
+
+/// Goes along a direction as far as the stress falls enough, the whole step if it can: where that
+/// leads, and the step taken. `None` if even a step at the edge of rounding does not lower the stress.
+fn descend(
+    pairs: &PairDistances,
+    here: &Configuration,
+    direction: &[f64],
+) -> Option<(Configuration, Vec<f64>)> {
+    // The stress is twice the function whose gradient is held.
+    let slope = 2.0 * dot(direction, &here.gradient);
+    let mut length = 1.0;
+    for _ in 0..SHORTENINGS {
+        let step: Vec<f64> = direction.iter().map(|s| length * s).collect();
+        let points: Vec<Point> = here
+            .points
+            .iter()
+            .zip(step.chunks_exact(2))
+            .map(|(point, step)| [point[0] + step[0], point[1] + step[1]])
+            .collect();
+        let stress = raw_stress(pairs, &points);
+        if stress <= here.stress + KEPT * length * slope {
+            let gradient = half_gradient(pairs, &points);
+            return Some((Configuration { points, stress, gradient }, step));
+        }
+        // The lowest point of the parabola through what is known.
+        let lowest = -slope * length * length / (2.0 * (stress - here.stress - slope * length));
+        let share = lowest / length;
+        length *= if share.is_nan() { 0.1 } else { share.clamp(0.1, 0.5) };
+    }
+    None
+}
+
+/// Gradient of half the stress, unknowns in the order `x_1 y_1 x_2 y_2 ..`:
+/// `sum_j w_ij (1 - d_ij / r_ij) (x_i - x_j)`.
+fn half_gradient(pairs: &PairDistances, points: &[Point]) -> Vec<f64> {
+    let mut gradient = vec![0.0; 2 * points.len()];
+    for pair in pairs.pairs() {
+        let (i, j) = (pair.i as usize, pair.j as usize);
+        let offset = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
+        let r = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+        if r > 0.0 {
+            let pull = pair.weight * (1.0 - pair.distance / r);
+            for (axis, along) in offset.into_iter().enumerate() {
+                gradient[2 * i + axis] += pull * along;
+                gradient[2 * j + axis] -= pull * along;
+            }
+        }
+    }
+    gradient
 }
 
 #[cfg(test)]

@@ -19,13 +19,13 @@
 //! says nothing.
 //!
 //! # Algorithm
-//! Expectation-maximisation. The posterior of each step's place is taken on a grid around the
+//! Expectation-maximisation. The posterior of each step's place is taken on a [`grid`] around the
 //! landmarks seen ([`posterior`]); then every landmark makes one Fisher-scoring step in position
 //! and detectability ([`scoring`]), and `s` one in common ([`sensor`]). `R` is fitted first and
 //! then held: it fixes the unit.
 //!
 //! # Complexity
-//! `O(k c)` a step and iteration, `k` landmarks near and `c` grid cells (about 80). Equal sets are
+//! `O(k c)` a step and iteration, `k` landmarks near and `c` grid cells (64). Equal sets are
 //! handled once.
 //!
 //! # Determinism
@@ -37,6 +37,7 @@
 //! J. Neyman, E. L. Scott, "Consistent estimates based on partially consistent observations",
 //! Econometrica 16, 1948.
 
+mod grid;
 mod posterior;
 mod scoring;
 mod sensor;
@@ -48,7 +49,7 @@ use covimap_embed::Point;
 use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
-use posterior::{Posterior, Workspace};
+use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 pub(crate) use sensor::Sensor;
 use sensor::SensorScores;
@@ -62,13 +63,16 @@ const WAVE: usize = 64;
 const SENSOR_STEPS: usize = 5;
 /// Sets, evenly spread over the log, that the sensor is fitted to: two numbers need no more.
 const SENSOR_SETS: usize = 4096;
+/// Sets of one parallel task of the sensor.
+const SENSOR_CHUNK: usize = 512;
 /// Longest move of a landmark in one iteration, as a share of the range.
 const LONGEST_MOVE: f64 = 0.2;
 /// Landmarks move by this many scoring steps at once: the place of a step follows its landmarks
 /// only in part, so that single steps fall short.
 const RELAXED: f64 = 1.5;
-/// Done when the landmarks move by less than this share of the range in the mean.
-const STILL: f64 = 3e-3;
+/// Done when the landmarks move by less than this share of their standard deviations: what is left
+/// to gain is far below what the log leaves open.
+const STILL: f64 = 0.35;
 
 /// Positions and detectabilities under refinement.
 pub(crate) struct Model {
@@ -87,18 +91,19 @@ pub(crate) fn refine(
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
     let range = half_far_link(graph, &start);
+    let neighbours = Neighbours::new(graph);
     let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
     let mut model = Model { detectability: Vec::new(), points: start, sensor };
     for _ in 0..SENSOR_STEPS {
         model.detectability = vec![model.sensor.detectability; graph.landmarks()];
-        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, true);
+        model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, true);
     }
     for _ in 0..iterations {
-        let scores = landmark_scores(graph, sets, &model, observer)?;
+        let scores = landmark_scores(&neighbours, sets, &model, observer)?;
         let moved = model.move_landmarks(&scores);
-        model.sensor = sensor_scores(graph, sets, &model).improve(model.sensor, false);
+        model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, false);
         observer.advanced(1);
-        if moved < STILL * model.sensor.range {
+        if moved < STILL {
             break;
         }
     }
@@ -106,17 +111,19 @@ pub(crate) fn refine(
 }
 
 impl Model {
-    /// One Fisher-scoring step of every landmark; returns the mean length of the moves.
+    /// One Fisher-scoring step of every landmark; returns the length of the moves in standard
+    /// deviations, both as root mean squares over the landmarks.
     fn move_landmarks(&mut self, scores: &[Scores]) -> f64 {
         let longest = LONGEST_MOVE * self.sensor.range;
-        let mut length = 0.0;
+        let (mut squares, mut variances) = (0.0, 0.0);
         for ((point, p), scores) in self.points.iter_mut().zip(&mut self.detectability).zip(scores) {
             let step = scores.step(longest);
             *point = [point[0] + RELAXED * step[0], point[1] + RELAXED * step[1]];
             *p = scores.improved_detectability(*p, self.sensor.detectability);
-            length += step[0].hypot(step[1]);
+            squares += step[0] * step[0] + step[1] * step[1];
+            variances += scores.variance();
         }
-        length / scores.len() as f64
+        if squares > 0.0 { (squares / variances).sqrt() } else { 0.0 }
     }
 }
 
@@ -138,26 +145,35 @@ fn half_far_link(graph: &LinkGraph, points: &[Point]) -> f64 {
 }
 
 /// Scores of the sensor under the present model, over a sample of the sets.
-fn sensor_scores(graph: &LinkGraph, sets: &SeenSets, model: &Model) -> SensorScores {
-    let posterior = Posterior::new(graph, model);
-    let mut workspace = Workspace::new(graph.landmarks());
+fn sensor_scores(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> SensorScores {
+    let posterior = Posterior::new(neighbours, model);
+    let sample: Vec<usize> = (0..sets.len()).step_by(sets.len().div_ceil(SENSOR_SETS).max(1)).collect();
+    let parts: Vec<SensorScores> = sample
+        .par_chunks(SENSOR_CHUNK)
+        .map(|chunk| {
+            let mut workspace = Workspace::new(neighbours.landmarks());
+            let mut scores = SensorScores::default();
+            for &set in chunk {
+                let step = posterior.of(sets.seen(set), &mut workspace);
+                scores.gather(&step, sets.times(set), model.sensor);
+            }
+            scores
+        })
+        .collect();
     let mut scores = SensorScores::default();
-    for set in (0..sets.len()).step_by(sets.len().div_ceil(SENSOR_SETS).max(1)) {
-        let step = posterior.of(sets.seen(set), &mut workspace);
-        scores.gather(&step, sets.times(set), model.sensor);
-    }
+    parts.iter().for_each(|part| scores.add(part));
     scores
 }
 
 /// Scores of all landmarks under the present model, over all sets.
 fn landmark_scores(
-    graph: &LinkGraph,
+    neighbours: &Neighbours,
     sets: &SeenSets,
     model: &Model,
     observer: &dyn Observer,
 ) -> Result<Vec<Scores>, MapError> {
-    let n = graph.landmarks();
-    let posterior = Posterior::new(graph, model);
+    let n = neighbours.landmarks();
+    let posterior = Posterior::new(neighbours, model);
     let idle = Mutex::new(Vec::new());
     let mut landmarks = vec![Scores::default(); n];
     for wave in (0..sets.len()).step_by(CHUNK * WAVE) {
@@ -173,7 +189,7 @@ fn landmark_scores(
                     idling.unwrap_or_else(|| (Workspace::new(n), ScoreBoard::new(n)));
                 for set in first..sets.len().min(first + CHUNK) {
                     let step = posterior.of(sets.seen(set), &mut workspace);
-                    board.gather(&step, sets.times(set), posterior.curve());
+                    board.gather(&step, sets.times(set), posterior.sight());
                 }
                 let scores = board.take();
                 idle.lock().expect("no worker panics (bug in covimap)").push((workspace, board));
@@ -181,7 +197,7 @@ fn landmark_scores(
             })
             .collect();
         for (landmark, scores) in scored.into_iter().flatten() {
-            landmarks[landmark as usize].add(&scores);
+            landmarks[landmark as usize].add(&scores, 1.0);
         }
     }
     Ok(landmarks)

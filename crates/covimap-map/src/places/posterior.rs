@@ -1,44 +1,68 @@
 //! Where a step was made, given what was seen: the posterior over a grid of places.
 
+use std::ops::Range;
+
 use covimap_embed::Point;
 
 use super::Model;
-use super::sensor::{Curve, probability};
+use super::grid::{CELLS, Cells, Cutting, NEAR, Sight};
+use super::sensor::FALSE_SIGHTING;
 use crate::LinkGraph;
 
-/// Grid spacing, as a share of the range.
-const SPACING: f64 = 0.2;
-/// Radius of the grid around the middle of the landmarks seen, as a share of the range.
-const GRID: f64 = 1.0;
-/// Landmarks further than this from that middle, as a share of the range, say nothing.
-const NEAR: f64 = 2.2;
 /// Places below this share of the most likely one are passed over.
-const NEGLIGIBLE: f64 = 1e-2;
+const NEGLIGIBLE: f32 = 1e-2;
+/// Landmarks after which the product over them is brought back to one: no factor is below 1e-3, so
+/// that this many cannot make it vanish.
+const SCALED: usize = 8;
 
 /// A landmark that a step says something about.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Witness {
     pub landmark: u32,
-    /// Position relative to the middle of the grid.
-    pub at: Point,
-    pub detectability: f64,
+    pub cutting: Cutting,
+    pub detectability: f32,
     pub seen: bool,
 }
 
 /// A step with the posterior of its place.
 pub(super) struct Step<'a> {
     pub witnesses: &'a [Witness],
-    /// Places, relative to the middle of the grid, and their posterior weights, which sum to 1.
-    pub places: &'a [(Point, f64)],
+    /// Posterior weights of the places, which sum to 1.
+    pub places: &'a Cells,
+    /// Rows in which there are any.
+    pub rows: Range<usize>,
 }
 
 /// What the expectation step needs of the present model.
 pub(super) struct Posterior<'a> {
-    graph: &'a LinkGraph,
     model: &'a Model,
-    curve: Curve,
-    /// Grid places relative to its middle, from there outwards: the likely ones come first.
-    grid: Vec<Point>,
+    neighbours: &'a Neighbours,
+    sight: Sight,
+}
+
+/// Which landmarks are linked to which, and nothing else: it is read for every step.
+pub(super) struct Neighbours {
+    starts: Vec<usize>,
+    linked: Vec<u32>,
+}
+
+impl Neighbours {
+    pub fn new(graph: &LinkGraph) -> Self {
+        let mut neighbours = Self { starts: vec![0], linked: Vec::with_capacity(2 * graph.link_count()) };
+        for landmark in 0..graph.landmarks() as u32 {
+            neighbours.linked.extend(graph.of(landmark).iter().map(|link| link.to));
+            neighbours.starts.push(neighbours.linked.len());
+        }
+        neighbours
+    }
+
+    pub fn landmarks(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn of(&self, landmark: u32) -> &[u32] {
+        &self.linked[self.starts[landmark as usize]..self.starts[landmark as usize + 1]]
+    }
 }
 
 /// Memory of one worker, used again for every step.
@@ -47,50 +71,36 @@ pub(super) struct Workspace {
     links: Vec<u32>,
     nearby: Vec<u32>,
     witnesses: Vec<Witness>,
-    places: Vec<(Point, f64)>,
+    places: Cells,
 }
 
 impl Workspace {
     pub fn new(landmarks: usize) -> Self {
-        Self { links: vec![0; landmarks], nearby: Vec::new(), witnesses: Vec::new(), places: Vec::new() }
+        Self {
+            links: vec![0; landmarks],
+            nearby: Vec::new(),
+            witnesses: Vec::new(),
+            places: [[0.0; CELLS]; CELLS],
+        }
     }
 }
 
 impl<'a> Posterior<'a> {
-    pub fn new(graph: &'a LinkGraph, model: &'a Model) -> Self {
-        let range = model.sensor.range;
-        let half = (GRID / SPACING).ceil() as i32;
-        let mut grid: Vec<Point> = (-half..=half)
-            .flat_map(|x| (-half..=half).map(move |y| [f64::from(x) * SPACING, f64::from(y) * SPACING]))
-            .filter(|[x, y]| x.hypot(*y) <= GRID)
-            .map(|[x, y]| [x * range, y * range])
-            .collect();
-        grid.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
-        Self { graph, model, curve: Curve::new(model.sensor, (NEAR + GRID) * range), grid }
+    pub fn new(neighbours: &'a Neighbours, model: &'a Model) -> Self {
+        Self { model, neighbours, sight: Sight::new(model.sensor) }
     }
 
-    pub fn curve(&self) -> &Curve {
-        &self.curve
+    pub fn sight(&self) -> &Sight {
+        &self.sight
     }
 
-    /// The posterior of the place of a step that shows `seen`. No places where the sightings
-    /// contradict each other altogether.
+    /// The posterior of the place of a step that shows `seen`.
     pub fn of<'w>(&self, seen: &[u32], workspace: &'w mut Workspace) -> Step<'w> {
         self.find_witnesses(seen, workspace);
         let Workspace { witnesses, places, .. } = workspace;
-        places.clear();
-        let mut most = 0.0f64;
-        for &place in &self.grid {
-            let value = self.likelihood(place, witnesses, NEGLIGIBLE * most);
-            most = most.max(value);
-            places.push((place, value));
-        }
-        places.retain(|&(_, value)| value > NEGLIGIBLE * most);
-        let total: f64 = places.iter().map(|place| place.1).sum();
-        for place in places.iter_mut() {
-            place.1 /= total;
-        }
-        Step { witnesses, places }
+        self.multiply(witnesses, places);
+        let rows = normalise(places);
+        Step { witnesses, places, rows }
     }
 
     /// Median of the coordinates: a false sighting does not move it far.
@@ -111,10 +121,10 @@ impl<'a> Posterior<'a> {
         let middle = self.middle(seen);
         let Workspace { links, nearby, witnesses, .. } = workspace;
         for &landmark in seen {
-            for link in self.graph.of(landmark) {
-                let count = &mut links[link.to as usize];
+            for &linked in self.neighbours.of(landmark) {
+                let count = &mut links[linked as usize];
                 if *count == 0 {
-                    nearby.push(link.to);
+                    nearby.push(linked);
                 }
                 *count += 1;
             }
@@ -125,8 +135,13 @@ impl<'a> Posterior<'a> {
             let point = self.model.points[landmark as usize];
             let at = [point[0] - middle[0], point[1] - middle[1]];
             if at[0] * at[0] + at[1] * at[1] < near * near {
-                let detectability = self.model.detectability[landmark as usize];
-                witnesses.push(Witness { landmark, at, detectability, seen });
+                let detectability = self.model.detectability[landmark as usize] as f32;
+                witnesses.push(Witness {
+                    landmark,
+                    cutting: Cutting::of(at, self.sight.spacing),
+                    detectability,
+                    seen,
+                });
             }
         };
         for &landmark in seen {
@@ -140,19 +155,58 @@ impl<'a> Posterior<'a> {
         }
     }
 
-    /// Probability of the step's sightings from a place, eq. (2); 0 as soon as it is known to be below
-    /// `floor`, for no factor exceeds 1.
-    fn likelihood(&self, place: Point, witnesses: &[Witness], floor: f64) -> f64 {
-        let mut product = 1.0;
-        for witness in witnesses {
-            let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
-            let [visibility, _] = self.curve.at(dx * dx + dy * dy);
-            let seen = probability(witness.detectability, visibility);
-            product *= if witness.seen { seen } else { 1.0 - seen };
-            if product < floor {
-                return 0.0;
+    /// Probability of the step's sightings from every place, eq. (2), up to a common factor.
+    fn multiply(&self, witnesses: &[Witness], places: &mut Cells) {
+        *places = [[1.0; CELLS]; CELLS];
+        for some in witnesses.chunks(SCALED) {
+            for witness in some {
+                let by_sight = witness.detectability - FALSE_SIGHTING;
+                let (constant, factor) =
+                    if witness.seen { (FALSE_SIGHTING, by_sight) } else { (1.0 - FALSE_SIGHTING, -by_sight) };
+                for (row, places) in places.iter_mut().enumerate() {
+                    let visibility = self.sight.visibility(witness.cutting, row);
+                    for (place, v) in places.iter_mut().zip(visibility) {
+                        *place *= constant + factor * v;
+                    }
+                }
             }
+            let most = largest(places);
+            places.as_flattened_mut().iter_mut().for_each(|place| *place /= most);
         }
-        product
     }
+}
+
+fn largest(places: &Cells) -> f32 {
+    let mut most = [0.0f32; CELLS];
+    for row in places {
+        for (most, &place) in most.iter_mut().zip(row) {
+            *most = most.max(place);
+        }
+    }
+    most.into_iter().fold(0.0, f32::max)
+}
+
+/// Drops the negligible places and makes the others sum to 1; returns the rows that hold any.
+fn normalise(places: &mut Cells) -> Range<usize> {
+    let floor = NEGLIGIBLE * largest(places);
+    let mut total = 0.0;
+    let (mut first, mut end) = (CELLS, 0);
+    for (row, places) in places.iter_mut().enumerate() {
+        let mut sum = 0.0;
+        for place in places {
+            if *place <= floor {
+                *place = 0.0;
+            }
+            sum += *place;
+        }
+        if sum > 0.0 {
+            first = first.min(row);
+            end = row + 1;
+        }
+        total += sum;
+    }
+    for place in places.as_flattened_mut() {
+        *place /= total;
+    }
+    first..end
 }

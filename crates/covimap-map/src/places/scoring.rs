@@ -3,13 +3,14 @@
 //!
 //! With `r = (seen - P) / (P (1 - P))` and a derivative `D` of `P`, every (step, place) of
 //! posterior weight `g` adds `g r D` to the score and `g D D' / (P (1 - P))` to the information.
-//! `D = -p v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
+//! `D = -(p - e) v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
 //! detectability `p`.
 
 use covimap_embed::Point;
 
-use super::posterior::Step;
-use super::sensor::{Curve, DETECTABILITY, probability};
+use super::grid::{CELLS, Sight};
+use super::posterior::{Step, Witness};
+use super::sensor::{DETECTABILITY, FALSE_SIGHTING};
 
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
@@ -39,33 +40,15 @@ impl ScoreBoard {
     }
 
     /// Adds `times` steps with the posterior of their place.
-    pub fn gather(&mut self, step: &Step, times: f64, curve: &Curve) {
+    pub fn gather(&mut self, step: &Step, times: f64, sight: &Sight) {
         for witness in step.witnesses {
-            let seen = f64::from(u8::from(witness.seen));
-            let p = witness.detectability;
-            let mut own = Scores::default();
-            for &(place, weight) in step.places {
-                let (dx, dy) = (witness.at[0] - place[0], witness.at[1] - place[1]);
-                let [v, slope] = curve.at(dx * dx + dy * dy);
-                let probability = probability(p, v);
-                let information = times * weight / (probability * (1.0 - probability));
-                let surprise = information * (seen - probability);
-                let by_offset = p * slope;
-                own.position[0] -= surprise * by_offset * dx;
-                own.position[1] -= surprise * by_offset * dy;
-                let square = information * by_offset * by_offset;
-                own.information[0] += square * dx * dx;
-                own.information[1] += square * dx * dy;
-                own.information[2] += square * dy * dy;
-                own.detectability += surprise * v;
-                own.detectability_information += information * v * v;
-            }
+            let own = Scores::of(witness, step, sight);
             let sum = &mut self.scores[witness.landmark as usize];
             // Any step adds information on the detectability.
             if sum.detectability_information <= 0.0 {
                 self.touched.push(witness.landmark);
             }
-            sum.add(&own);
+            sum.add(&own, times);
         }
     }
 
@@ -77,30 +60,81 @@ impl ScoreBoard {
     }
 }
 
+/// Sums over the places, one a column of the grid.
+type Lanes = [f32; CELLS];
+
 impl Scores {
-    pub fn add(&mut self, other: &Self) {
-        self.position[0] += other.position[0];
-        self.position[1] += other.position[1];
-        for (sum, more) in self.information.iter_mut().zip(other.information) {
-            *sum += more;
+    /// Of a landmark, from one step.
+    fn of(witness: &Witness, step: &Step, sight: &Sight) -> Self {
+        let [x, y] = witness.cutting.offset;
+        let by_sight = witness.detectability - FALSE_SIGHTING;
+        let seen = f32::from(u8::from(witness.seen));
+        let along: Lanes = std::array::from_fn(|column| x - column as f32);
+        let zero: Lanes = [0.0; CELLS];
+        let [mut gx, mut gy, mut xx, mut xy, mut yy, mut gp, mut pp] = [zero; 7];
+        for row in step.rows.clone() {
+            let across = y - row as f32;
+            let weights = &step.places[row];
+            let visibility = sight.visibility(witness.cutting, row);
+            let slope = sight.slope(witness.cutting, row);
+            for k in 0..CELLS {
+                let v = visibility[k];
+                let probability = FALSE_SIGHTING + by_sight * v;
+                let information = weights[k] / (probability * (1.0 - probability));
+                let surprise = information * (seen - probability);
+                let by_offset = by_sight * slope[k];
+                let pull = surprise * by_offset;
+                gx[k] -= pull * along[k];
+                gy[k] -= pull * across;
+                let square = information * by_offset * by_offset;
+                let square_along = square * along[k];
+                xx[k] += square_along * along[k];
+                xy[k] += square_along * across;
+                yy[k] += square * across * across;
+                gp[k] += surprise * v;
+                pp[k] += information * v * v;
+            }
         }
-        self.detectability += other.detectability;
-        self.detectability_information += other.detectability_information;
+        let sum = |lanes: Lanes| f64::from(lanes.iter().sum::<f32>());
+        Self {
+            position: [sum(gx), sum(gy)],
+            information: [sum(xx), sum(xy), sum(yy)],
+            detectability: sum(gp),
+            detectability_information: sum(pp),
+        }
+    }
+
+    pub fn add(&mut self, other: &Self, times: f64) {
+        self.position[0] += times * other.position[0];
+        self.position[1] += times * other.position[1];
+        for (sum, more) in self.information.iter_mut().zip(other.information) {
+            *sum += times * more;
+        }
+        self.detectability += times * other.detectability;
+        self.detectability_information += times * other.detectability_information;
     }
 
     /// The Fisher-scoring step of the position, no longer than allowed.
     pub fn step(&self, longest: f64) -> Point {
+        let Some([xx, xy, yy]) = self.covariance() else { return [0.0; 2] };
+        let [gx, gy] = self.position;
+        let step = [xx * gx + xy * gy, xy * gx + yy * gy];
+        let length = step[0].hypot(step[1]);
+        if length > longest { step.map(|c| c * longest / length) } else { step }
+    }
+
+    /// Variance of the position, both axes together, as far as the places of the steps are known.
+    pub fn variance(&self) -> f64 {
+        self.covariance().map_or(0.0, |[xx, _, yy]| xx + yy)
+    }
+
+    /// Inverse of the information and a ridge: xx, xy, yy. `None` without information.
+    fn covariance(&self) -> Option<[f64; 3]> {
         let [xx, xy, yy] = self.information;
         let ridge = RIDGE * (xx + yy);
         let (xx, yy) = (xx + ridge, yy + ridge);
         let determinant = xx * yy - xy * xy;
-        if determinant <= 0.0 {
-            return [0.0; 2];
-        }
-        let [gx, gy] = self.position;
-        let step = [(yy * gx - xy * gy) / determinant, (xx * gy - xy * gx) / determinant];
-        let length = step[0].hypot(step[1]);
-        if length > longest { step.map(|c| c * longest / length) } else { step }
+        (determinant > 0.0).then(|| [yy, -xy, xx].map(|entry| entry / determinant))
     }
 
     /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.

@@ -1,9 +1,10 @@
 //! The sensor that all landmarks share: range and edge, and how they are fitted.
 
+use super::grid::SPACING;
 use super::posterior::Step;
 
 /// Probability `e` of a sighting that should not be.
-pub(super) const FALSE_SIGHTING: f64 = 1e-3;
+pub(super) const FALSE_SIGHTING: f32 = 1e-3;
 /// Narrowest edge, as a share of the range: the grid of places resolves no finer.
 const NARROWEST: f64 = 0.03;
 /// Largest relative change of the range in one step.
@@ -14,8 +15,6 @@ const EDGE_STEP: f64 = 0.3;
 const DETECTABILITY_STEP: f64 = 0.2;
 /// Bounds of a detectability.
 pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
-/// Entries of the table of the visibility curve over squared distance.
-const TABLE: usize = 4096;
 
 /// What the log says of the sensor, in map units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,47 +29,15 @@ pub(crate) struct Sensor {
 
 impl Sensor {
     /// The visibility curve `v(d) = 1 / (1 + exp((d - R) / s))`.
-    fn visibility(self, distance: f64) -> f64 {
+    pub(super) fn visibility(self, distance: f64) -> f64 {
         1.0 / (1.0 + ((distance - self.range) / self.edge).exp())
-    }
-}
-
-/// Eq. (1): probability of seeing a landmark of this detectability where the curve is `visibility`.
-pub(super) fn probability(detectability: f64, visibility: f64) -> f64 {
-    FALSE_SIGHTING + (detectability - FALSE_SIGHTING) * visibility
-}
-
-/// The visibility curve over squared distance: roots and exponentials are paid for once.
-pub(super) struct Curve {
-    /// `v` and `v (1 - v) / (s d)`, the slope of `-v` along `d` over `d`.
-    entries: Vec<[f64; 2]>,
-    per_square: f64,
-}
-
-impl Curve {
-    /// Tabulates the curve up to a distance.
-    pub fn new(sensor: Sensor, farthest: f64) -> Self {
-        let per_square = TABLE as f64 / (farthest * farthest);
-        let entry = |k: usize| {
-            // The first entry covers half a step; anywhere in it is as good.
-            let distance = ((k as f64).max(0.25) / per_square).sqrt();
-            let v = sensor.visibility(distance);
-            [v, v * (1.0 - v) / (sensor.edge * distance)]
-        };
-        Self { entries: (0..=TABLE).map(entry).collect(), per_square }
-    }
-
-    pub fn at(&self, square: f64) -> [f64; 2] {
-        // Adding 2^52 leaves the rounded number in the low bits: a cast that costs no branch.
-        let nearest = (square * self.per_square).min(TABLE as f64) + 4_503_599_627_370_496.0;
-        self.entries[(nearest.to_bits() & 0xffff) as usize]
     }
 }
 
 /// Score and information of the range, of the logarithm of the edge and of a change of all
 /// detectabilities.
 ///
-/// The derivatives of eq. (1) are `p v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
+/// The derivatives of eq. (1) are `(p - e) v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
 /// `p`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SensorScores {
@@ -82,22 +49,39 @@ pub(super) struct SensorScores {
 impl SensorScores {
     /// Adds `times` steps with the posterior of their place.
     pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor) {
+        let spacing = SPACING * sensor.range;
         for witness in step.witnesses {
-            for &(place, weight) in step.places {
-                let distance = (witness.at[0] - place[0]).hypot(witness.at[1] - place[1]);
-                let v = sensor.visibility(distance);
-                let p = probability(witness.detectability, v);
-                let information = times * weight / (p * (1.0 - p));
-                let surprise = information * (f64::from(u8::from(witness.seen)) - p);
-                let by_range = witness.detectability * v * (1.0 - v) / sensor.edge;
-                let by_edge = by_range * (distance - sensor.range);
-                self.range[0] += surprise * by_range;
-                self.range[1] += information * by_range * by_range;
-                self.log_edge[0] += surprise * by_edge;
-                self.log_edge[1] += information * by_edge * by_edge;
-                self.detectability[0] += surprise * v;
-                self.detectability[1] += information * v * v;
+            let detectability = f64::from(witness.detectability);
+            for row in step.rows.clone() {
+                for (column, &weight) in step.places[row].iter().enumerate().filter(|place| *place.1 > 0.0) {
+                    let [x, y] = witness.cutting.offset.map(f64::from);
+                    let (dx, dy) = (x - column as f64, y - row as f64);
+                    let distance = (dx * dx + dy * dy).sqrt() * spacing;
+                    let v = sensor.visibility(distance);
+                    let p = f64::from(FALSE_SIGHTING) + (detectability - f64::from(FALSE_SIGHTING)) * v;
+                    let information = times * f64::from(weight) / (p * (1.0 - p));
+                    let surprise = information * (f64::from(u8::from(witness.seen)) - p);
+                    let by_range = (detectability - f64::from(FALSE_SIGHTING)) * v * (1.0 - v) / sensor.edge;
+                    let by_edge = by_range * (distance - sensor.range);
+                    self.range[0] += surprise * by_range;
+                    self.range[1] += information * by_range * by_range;
+                    self.log_edge[0] += surprise * by_edge;
+                    self.log_edge[1] += information * by_edge * by_edge;
+                    self.detectability[0] += surprise * v;
+                    self.detectability[1] += information * v * v;
+                }
             }
+        }
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        for (sum, more) in [
+            (&mut self.range, other.range),
+            (&mut self.log_edge, other.log_edge),
+            (&mut self.detectability, other.detectability),
+        ] {
+            sum[0] += more[0];
+            sum[1] += more[1];
         }
     }
 

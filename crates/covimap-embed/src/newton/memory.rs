@@ -1,0 +1,128 @@
+//! What earlier steps tell of the curvature: the limited-memory BFGS recursion.
+
+use std::collections::VecDeque;
+
+/// Steps that are remembered.
+const REMEMBERED: usize = 8;
+
+/// The last steps, each with the change of the gradient that it brought.
+#[derive(Default)]
+pub(super) struct Memory {
+    steps: VecDeque<Remembered>,
+}
+
+struct Remembered {
+    step: Vec<f64>,
+    change: Vec<f64>,
+    /// `1 / step'change`.
+    inverse_curvature: f64,
+}
+
+impl Memory {
+    pub fn clear(&mut self) {
+        self.steps.clear();
+    }
+
+    /// Remembers a step. One along which the slope does not rise says nothing of a minimum and is
+    /// left out, so that the recursion stays positive definite.
+    pub fn remember(&mut self, step: Vec<f64>, change: Vec<f64>) {
+        let curvature = dot(&step, &change);
+        if curvature > 1e-10 * (dot(&step, &step) * dot(&change, &change)).sqrt() {
+            if self.steps.len() == REMEMBERED {
+                self.steps.pop_front();
+            }
+            self.steps.push_back(Remembered { step, change, inverse_curvature: 1.0 / curvature });
+        }
+    }
+
+    /// `B v`, `B` being the inverse second derivative that the steps tell of, built upon `precondition`,
+    /// which replaces a vector by an approximation of the same.
+    pub fn apply(&self, mut v: Vec<f64>, precondition: impl FnOnce(&mut [f64])) -> Vec<f64> {
+        let mut shares = Vec::with_capacity(self.steps.len());
+        for past in self.steps.iter().rev() {
+            let share = past.inverse_curvature * dot(&past.step, &v);
+            add(&mut v, -share, &past.change);
+            shares.push(share);
+        }
+        precondition(&mut v);
+        for (past, share) in self.steps.iter().zip(shares.into_iter().rev()) {
+            let by = share - past.inverse_curvature * dot(&past.change, &v);
+            add(&mut v, by, &past.step);
+        }
+        v
+    }
+}
+
+/// Inner product, in the order of the entries.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// `a += factor b`.
+pub(super) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += factor * b;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Second derivative of a small quadratic, and its diagonal as a preconditioner.
+    const MATRIX: [[f64; 3]; 3] = [[4.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.0, -1.0, 2.0]];
+
+    fn times(v: &[f64]) -> Vec<f64> {
+        MATRIX.iter().map(|row| dot(row, v)).collect()
+    }
+
+    fn by_diagonal(v: &mut [f64]) {
+        v.iter_mut().zip(MATRIX).enumerate().for_each(|(k, (v, row))| *v /= row[k]);
+    }
+
+    fn remembering(steps: &[[f64; 3]]) -> Memory {
+        let mut memory = Memory::default();
+        steps.iter().for_each(|step| memory.remember(step.to_vec(), times(step)));
+        memory
+    }
+
+    #[test]
+    fn without_steps_it_is_the_preconditioner() {
+        assert_eq!(Memory::default().apply(vec![4.0, 6.0, 8.0], by_diagonal), [1.0, 2.0, 4.0]);
+    }
+
+    #[test]
+    fn the_last_step_is_answered_with_itself() {
+        // The secant equation: B (change of the gradient) = step.
+        let memory = remembering(&[[1.0, 0.0, 2.0], [0.5, -1.0, 0.25]]);
+        let answer = memory.apply(times(&[0.5, -1.0, 0.25]), by_diagonal);
+        for (got, wanted) in answer.iter().zip([0.5, -1.0, 0.25]) {
+            assert!((got - wanted).abs() < 1e-14, "{answer:?}");
+        }
+    }
+
+    #[test]
+    fn conjugate_steps_in_all_directions_tell_everything() {
+        // e1, e2 - e1 / 4 and the third made orthogonal to both under the matrix:
+        // b'A e3 = -1 and b'A b = 11/4 for b = e2 - e1 / 4, thus e3 + 4/11 b.
+        let memory = remembering(&[[1.0, 0.0, 0.0], [-0.25, 1.0, 0.0], [-1.0 / 11.0, 4.0 / 11.0, 1.0]]);
+        let wanted = [0.3, -2.0, 1.5];
+        let answer = memory.apply(times(&wanted), by_diagonal);
+        for (got, wanted) in answer.iter().zip(wanted) {
+            assert!((got - wanted).abs() < 1e-12, "{answer:?}");
+        }
+    }
+
+    #[test]
+    fn steps_along_which_the_slope_falls_are_left_out() {
+        let mut memory = Memory::default();
+        memory.remember(vec![1.0, 0.0, 0.0], vec![-1.0, 0.0, 0.0]);
+        memory.remember(vec![0.0; 3], vec![0.0; 3]);
+        assert!(memory.steps.is_empty());
+        for k in 0..2 * REMEMBERED {
+            memory.remember(vec![1.0, k as f64, 0.0], vec![1.0, k as f64, 0.0]);
+        }
+        assert_eq!(memory.steps.len(), REMEMBERED);
+        assert_eq!(memory.steps[0].step[1], REMEMBERED as f64);
+    }
+}
