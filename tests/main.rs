@@ -5,5 +5,6 @@
 
 mod documents;
 mod golden;
+mod localisation;
 mod pipeline;
 mod quality;

@@ -3,7 +3,7 @@
 //! | code | meaning |
 //! |---|---|
 //! | 0 | done |
-//! | 1 | failure: an output cannot be written, the system refused something |
+//! | 1 | failure: an output cannot be written, the system refused something, a build would exceed `--max-memory` |
 //! | 2 | usage: unknown or contradicting options |
 //! | 3 | bad input: a file is missing, unreadable or does not say what its format asks |
 //! | 130 | interrupted |
@@ -13,6 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use covimap_map::MapError;
+use covimap_plan::PlanError;
 use covimap_sim::SimError;
 
 use crate::console::complain;
@@ -79,6 +80,10 @@ fn code(error: &anyhow::Error) -> u8 {
     if error.is::<BadLines>() {
         return BAD_INPUT;
     }
+    // A question that a map cannot answer is a wrong question or a wrong map.
+    if error.is::<PlanError>() {
+        return BAD_INPUT;
+    }
     match error.downcast_ref() {
         Some(MapError::Interrupted) => INTERRUPTED,
         Some(
@@ -89,11 +94,14 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::TooManySteps { .. }
             | MapError::MapFormat { .. }
             | MapError::InvalidMap { .. }
+            | MapError::DamagedMap { .. }
+            | MapError::NoRouteGraph { .. }
             | MapError::NothingTogether { .. }
             | MapError::NoInformation { .. }
             | MapError::TooLargeForClassical { .. }
             | MapError::NoCommonLandmarks { .. }
-            | MapError::TooFewCommon { .. },
+            | MapError::TooFewCommon { .. }
+            | MapError::OtherLog { .. },
         ) => BAD_INPUT,
         Some(MapError::BadParameter { .. }) => USAGE,
         _ => FAILURE,

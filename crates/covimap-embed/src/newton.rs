@@ -31,7 +31,7 @@ use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
 use memory::{Memory, dot};
-use normal_equations::NormalEquations;
+pub(crate) use normal_equations::NormalEquations;
 
 /// Damping of the first factor; each later one has a tenth of the last.
 const FIRST_DAMPING: f64 = 1e-2;
@@ -106,7 +106,7 @@ pub fn newton_while(
             model.expire();
         }
     };
-    Ok(Embedding::new(pairs, here.points, here.stress, iterations, termination))
+    Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
 }
 
 /// A configuration with its stress and the gradient of half of it.

@@ -3,11 +3,13 @@
 use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
 use rayon::prelude::*;
 
+use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
-    AutoParams, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport, Stage, local_map,
+    AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport,
+    Stage, local_map,
 };
 
 /// A mapped component.
@@ -24,44 +26,32 @@ pub(crate) struct ComponentMap {
     pub stress1: f64,
     pub iterations: usize,
     pub converged: bool,
+    pub distances: Option<DistanceReport>,
+}
+
+/// What is known of a connected component besides its links.
+pub(crate) struct Evidence<'a> {
+    pub counts: &'a CoVisibility,
+    /// What the counts call landmark `k` of the component, ascending.
+    pub members: &'a [u32],
+    pub steps: &'a ComponentSteps<'a>,
+    pub sets: &'a SeenSets,
 }
 
 /// Maps a connected component: regions, local maps, stitching, polish, refinement.
 pub(crate) fn map_component(
     graph: &LinkGraph,
-    sets: &SeenSets,
+    evidence: &Evidence,
     params: &AutoParams,
+    seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
     let (cover, stitched) = stitched(graph, params, observer)?;
-
-    begin(observer, Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
-    let pairs = graph.to_pairs();
     let shape = Shape::of(graph, &cover, &stitched);
-    let Stitched { points: start, branch_of, seams } = stitched;
-    let start = shape.start(&pairs, start)?;
-    let polished = polish(&*shape.terms(&pairs)?, &start, params, observer)?;
-    observer.finished(Stage::Polish);
-
-    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        polished.points
-    } else {
-        begin(observer, Stage::Refine, Some(params.refine_iterations as u64))?;
-        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
-        observer.finished(Stage::Refine);
-        refined.points
-    };
-    Ok(ComponentMap {
-        stress1: stress1(&pairs, &points),
-        iterations: polished.iterations,
-        converged: polished.termination == Termination::Converged,
-        points,
-        region: cover.core_of().to_vec(),
-        regions: cover.regions().len(),
-        branch_of,
-        seams,
-        path_pull: shape.pull,
-    })
+    let Stitched { points, branch_of, seams } = stitched;
+    let settled = settle(graph, evidence, points, shape, params, seed, observer)?;
+    let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
+    Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
 }
 
 /// The first map of a connected graph: regions, each solved by itself, in one frame.
@@ -73,11 +63,11 @@ fn stitched(
     params: &AutoParams,
     observer: &dyn Observer,
 ) -> Result<(RegionCover, Stitched), MapError> {
-    begin(observer, Stage::Regions, None)?;
+    begin(Stage::Regions, None, observer)?;
     let mut cover = RegionCover::new(graph, params.regions);
     observer.finished(Stage::Regions);
 
-    begin(observer, Stage::LocalMaps, Some(cover.regions().len() as u64))?;
+    begin(Stage::LocalMaps, Some(cover.regions().len() as u64), observer)?;
     let solve = |region: &Region| {
         if observer.interrupted() {
             return Err(MapError::Interrupted);
@@ -89,7 +79,7 @@ fn stitched(
     let mut maps = cover.regions().par_iter().map(solve).collect::<Result<Vec<_>, MapError>>()?;
     observer.finished(Stage::LocalMaps);
 
-    begin(observer, Stage::Stitch, None)?;
+    begin(Stage::Stitch, None, observer)?;
     let mut stitched = stitch(graph, &cover, &maps)?;
     let hinged = cover.widen(graph, &stitched.seams.hinges, params.regions);
     let widened: Vec<LocalMap> =
@@ -102,12 +92,63 @@ fn stitched(
     Ok((cover, stitched))
 }
 
-fn begin(observer: &dyn Observer, stage: Stage, total: Option<u64>) -> Result<(), MapError> {
+/// Polishes and refines a connected component from a start in map units; it counts as one region.
+///
+/// The distance function is learnt where links alone make the map: path lengths hold with the fixed one.
+pub(crate) fn settle(
+    graph: &LinkGraph,
+    evidence: &Evidence,
+    start: Vec<Point>,
+    shape: Shape,
+    params: &AutoParams,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<ComponentMap, MapError> {
+    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
+    let pairs = graph.to_pairs();
+    let start = shape.start(&pairs, start)?;
+    let polished = polish(&*shape.terms(&pairs)?, &start, params, observer)?;
+    observer.finished(Stage::Polish);
+
+    begin(Stage::Distances, None, observer)?;
+    let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
+    let mut polished = Alternated::fixed(polished, pairs);
+    if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
+        let polish = |pairs: &_, start: &_| polish(pairs, start, params, observer);
+        polished = distances.alternate(polished, params.distance, polish)?;
+    }
+    observer.finished(Stage::Distances);
+
+    let start = std::mem::take(&mut polished.embedding.points);
+    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
+        start
+    } else {
+        begin(Stage::Refine, Some(params.refine_iterations as u64), observer)?;
+        let refined = refine(graph, evidence.sets, start, params.refine_iterations, observer)?;
+        observer.finished(Stage::Refine);
+        refined.points
+    };
+    Ok(ComponentMap {
+        stress1: stress1(&polished.pairs, &points),
+        iterations: polished.embedding.iterations,
+        converged: polished.embedding.termination == Termination::Converged,
+        distances: distances.map(|distances| distances.report(&polished, &points)),
+        region: vec![0; points.len()],
+        regions: 1,
+        branch_of: vec![0],
+        seams: SeamsReport::default(),
+        path_pull: shape.pull,
+        points,
+    })
+}
+
+/// Tells the observer of a stage, unless it asks to stop.
+fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
     observer.started(stage, total);
     if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
 }
 
-/// Least stress over all terms.
+/// Least stress over all terms, from a start.
 fn polish(
     pairs: &PairDistances,
     start: &[Point],

@@ -53,6 +53,23 @@ pub enum MapError {
         /// Format number that this build reads.
         known: u64,
     },
+    /// A binary map file that is not as it was written.
+    #[error("{file}: the map file is damaged, {what}; copy it again or build the map again")]
+    DamagedMap {
+        /// File as the user named it.
+        file: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A component without a road makes no route graph.
+    #[error(
+        "component {component} of the map has no line of sight, so there is no route in it; give another component, or \
+         build a map that holds none at all again from its log"
+    )]
+    NoRouteGraph {
+        /// The component.
+        component: u32,
+    },
     /// Parts of a map that contradict each other.
     #[error("{what}")]
     InvalidMap {
@@ -160,6 +177,34 @@ pub enum MapError {
         common: usize,
         /// Fewest that a component needs.
         fewest: usize,
+    },
+    /// A build is expected to take more memory than it may.
+    #[error(
+        "the build may take {} MB of memory, {} MB are allowed - {landmarks} landmarks, about {pairs} pairs; \
+         allow more or map parts of the log", needed.div_ceil(1_000_000), allowed / 1_000_000
+    )]
+    TooLittleMemory {
+        /// Bytes expected at the peak.
+        needed: u64,
+        /// Bytes allowed.
+        allowed: u64,
+        /// Landmarks of the log.
+        landmarks: u64,
+        /// Pairs seen together, estimated.
+        pairs: u64,
+    },
+    /// A log that a map was not made of.
+    #[error(
+        "the map was not made of this log: {id:?} is in one of the two only, the map has {map} landmarks and the \
+         log {log}; give the log that the map was made of"
+    )]
+    OtherLog {
+        /// A landmark that one of the two lacks.
+        id: String,
+        /// Landmarks of the map.
+        map: usize,
+        /// Landmarks of the log.
+        log: usize,
     },
     /// A fit or an embedding that the numbers do not allow.
     #[error(transparent)]

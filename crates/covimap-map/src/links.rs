@@ -3,27 +3,20 @@
 //! Two landmarks that were seen together are *linked*; two that never were are simply unknown to
 //! each other, which is not a distance. A link has
 //!
-//! - a distance `d_ij = 2 R u`, `R = 0.6`, the solution of `l(u) = 2 f_ij / (1 + f_ij)`: two landmarks that
-//!   are seen within a range `R`, from places that are spread evenly, are seen together from the lens that
-//!   two discs of radius `R` have in common, which is `l(u) = 2/pi (acos u - u sqrt(1 - u^2))` of a disc;
-//!   with `f_ij` the shrunken frequency `(n_ij + 1/2) / (n_i + n_j - n_ij + 1)`, which lies strictly
-//!   between 0 and 1, so that `0 < d_ij < 2 R`;
+//! - a distance `d_ij = sqrt(-alpha ln f_ij)`, the paper's eq. (10) without its clamps, of the
+//!   shrunken frequency `f_ij = (n_ij + 1/2) / (n_i + n_j - n_ij + 1)`, which lies strictly
+//!   between 0 and 1, so that `d_ij > 0`;
 //! - a weight `sqrt(n_ij)`: pairs seen together often are known better, but a slow robot repeats
 //!   itself, so that the information grows more slowly than the count.
-
-use std::f64::consts::PI;
-use std::sync::LazyLock;
 
 use covimap_embed::{Pair, PairDistances};
 use petgraph::graph::UnGraph;
 use rayon::prelude::*;
 
-use crate::{CoVisibility, LandmarkId};
+use crate::{CoVisibility, HonestLinks, LandmarkId};
 
-/// Diameter `2 R` of the discs; it sets the unit of the map, about that of the paper's `sqrt(-0.3 ln f)`.
-const DIAMETER: f64 = 1.2;
-/// Intervals of the table of the inverted lens.
-const INTERVALS: usize = 1024;
+/// The paper's `alpha_2`; it sets the unit of the map.
+pub(crate) const ALPHA: f64 = 0.3;
 
 /// One end of a link, as stored in the row of the other end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +40,17 @@ impl LinkGraph {
     /// The link of every pair that was seen together.
     #[must_use]
     pub fn from_counts(counts: &CoVisibility) -> Self {
+        Self::from_counts_where(counts, |_, _| true)
+    }
+
+    /// The links that are kept.
+    #[must_use]
+    pub fn from_honest(counts: &CoVisibility, honest: &HonestLinks) -> Self {
+        Self::from_counts_where(counts, |landmark, place| honest.keeps(landmark, place))
+    }
+
+    /// The links of which `keep(i, place in the row of i)` is true; it must be symmetric.
+    fn from_counts_where(counts: &CoVisibility, keep: impl Fn(LandmarkId, usize) -> bool + Sync) -> Self {
         let rows: Vec<Vec<Link>> = (0..counts.landmarks() as u32)
             .into_par_iter()
             .map(|i| {
@@ -55,7 +59,9 @@ impl LinkGraph {
                 let link = |(&to, &both): (&u32, &u32)| {
                     link(to, f64::from(n_i), f64::from(counts.sightings()[to as usize]), f64::from(both))
                 };
-                partners.iter().zip(together).map(link).collect()
+                let kept = |&(place, _): &(usize, _)| keep(LandmarkId(i), place);
+                let pairs = partners.iter().zip(together);
+                pairs.enumerate().filter(kept).map(|(_, pair)| link(pair)).collect()
             })
             .collect();
         Self::from_rows(rows)
@@ -176,38 +182,7 @@ impl LinkGraph {
 
 fn link(to: u32, n_i: f64, n_j: f64, both: f64) -> Link {
     let frequency = (both + 0.5) / (n_i + n_j - both + 1.0);
-    Link { to, distance: DIAMETER * lens_distance(frequency), weight: both.sqrt() }
-}
-
-/// Share of a disc that is also in another one of the same size, `u` diameters away.
-fn lens(u: f64) -> f64 {
-    2.0 / PI * (u.acos() - u * (1.0 - u * u).sqrt())
-}
-
-/// The `u` in `(0, 1)` of two discs of which a share `frequency`, in `(0, 1)`, of all that they cover is in
-/// both: `l(u) = 2 f / (1 + f)`.
-///
-/// Interpolated in a table over `l^(2/3)`, in which `u` is smooth where discs hardly overlap; the error is
-/// below 1e-6.
-fn lens_distance(frequency: f64) -> f64 {
-    static TABLE: LazyLock<Vec<f64>> = LazyLock::new(|| {
-        let inverse = |k| inverse_lens((f64::from(k) / INTERVALS as f64).powf(1.5));
-        (0..=INTERVALS as u32).map(inverse).collect()
-    });
-    let place = (2.0 * frequency / (1.0 + frequency)).cbrt().powi(2) * INTERVALS as f64;
-    let below = (place as usize).min(INTERVALS - 1);
-    let share = place - below as f64;
-    TABLE[below] + share * (TABLE[below + 1] - TABLE[below])
-}
-
-/// The `u` of a share `l`, by bisection.
-fn inverse_lens(l: f64) -> f64 {
-    let (mut near, mut far) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (near + far);
-        if lens(middle) > l { near = middle } else { far = middle }
-    }
-    0.5 * (near + far)
+    Link { to, distance: (-ALPHA * frequency.ln()).sqrt(), weight: both.sqrt() }
 }
 
 #[cfg(test)]

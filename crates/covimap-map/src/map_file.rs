@@ -1,12 +1,24 @@
-//! The map file: a [`GlobalMap`] as JSON.
+//! The map file: a [`GlobalMap`] as JSON, or in fewer bytes (see [`binary`]).
 //!
-//! One object, format 1:
+//! A file whose name ends in `.covimap` is written in the binary form, any other as JSON. A reader
+//! tells the two apart by their first bytes.
+//!
+//! JSON is one object, format 1:
 //!
 //! ```json
 //! {"format":1,"generator":"covimap 0.1.0","method":"auto","seed":0,"settings":{"classical":{}},"landmarks":[
-//! {"id":"L6","x":0.25,"y":-1.5,"component":0,"region":0,"sightings":412,"partners":9,"branch":0,"loose":false}
+//! {"id":"L6","x":0.25,"y":-1.5,"component":0,"region":0,"sightings":412,"partners":9,"links":[[1,40]],"branch":0,"loose":false},
+//! {"id":"L9","x":0.5,"y":-1.25,"component":0,"region":0,"sightings":377,"partners":7,"branch":0,"loose":false}
 //! ],"report":{"steps":5768}}
 //! ```
+//!
+//! `links` are the lines of sight ([`crate::SightLines`]) to landmarks that come later: the number of the
+//! other landmark, counted from 0 in the order of the file, and the steps that show both. A row without
+//! any has no such key, and neither has an older file. A map in a frame known from outside has the key
+//! `alignment` ([`ChartFit`]) before `landmarks`.
+//! A map that knows its sensor has more: `detectability` and `deviation` of each landmark, and after
+//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001,"warp":0.02}]`, one a
+//! component, and `"occluded":[[0,12]]`, pairs of places in the list of landmarks; see [`Sensing`].
 //!
 //! A landmark takes a line, so that `diff` and `grep` work. The bytes depend on the map alone.
 //! Numbers have the fewest digits that read back as the same number: a map that is saved and
@@ -27,7 +39,14 @@ use std::path::Path;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 
-use crate::{BuildReport, GlobalMap, LandmarkNames, MapError, MapperParams, PlacedLandmark, output};
+use crate::{
+    BuildReport, ChartFit, GlobalMap, LandmarkId, LandmarkNames, MapError, MapperParams, PlacedLandmark,
+    Sensing, SensorModel, SightLines, output,
+};
+
+mod binary;
+
+use binary::BINARY_EXTENSION;
 
 /// Format number that this build writes and reads.
 const FORMAT: u64 = 1;
@@ -45,6 +64,12 @@ struct Row<'a> {
     region: u32,
     sightings: u32,
     partners: u32,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    links: Vec<(u32, u32)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detectability: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deviation: Option<f64>,
     #[serde(default)]
     branch: u32,
     #[serde(default)]
@@ -56,8 +81,14 @@ struct Contents<'a> {
     method: Value,
     seed: u64,
     settings: Map<String, Value>,
+    #[serde(default)]
+    alignment: Vec<ChartFit>,
     #[serde(borrow)]
     landmarks: Vec<Row<'a>>,
+    #[serde(default)]
+    sensors: Vec<SensorModel>,
+    #[serde(default)]
+    occluded: Vec<[u32; 2]>,
     report: BuildReport,
 }
 
@@ -67,12 +98,17 @@ struct Header {
 }
 
 impl GlobalMap {
-    /// Writes the map file at `path`, whole or not at all; `-` is standard output.
+    /// Writes the map file at `path`, whole or not at all; `-` is standard output. A name that ends in
+    /// `.covimap` takes the binary form, which loads fastest; any other JSON.
     ///
     /// # Errors
     /// [`MapError::Unwritable`] when the path cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), MapError> {
-        output::write_whole(path, |out| self.write_json(out))
+        if path.extension().is_some_and(|extension| extension == BINARY_EXTENSION) {
+            output::write_whole(path, |out| self.write_binary(out))
+        } else {
+            output::write_whole(path, |out| self.write_json(out))
+        }
     }
 
     /// Writes the text of the map file, a landmark at a time.
@@ -87,20 +123,33 @@ impl GlobalMap {
             out,
             "{{\"format\":{FORMAT},\"generator\":\"{generator}\",\"method\":{method},\"seed\":{seed}"
         )?;
-        write!(out, ",\"settings\":{},\"landmarks\":[", Value::Object(settings))?;
-        for (index, (id, placed)) in self.names().iter().zip(self.landmarks()).enumerate() {
-            out.write_all(if index == 0 { b"\n" } else { b",\n" })?;
-            serde_json::to_writer(&mut out, &Row::new(id, placed))?;
+        write!(out, ",\"settings\":{}", Value::Object(settings))?;
+        if !self.alignment().is_empty() {
+            write!(out, ",\"alignment\":{}", serde_json::to_string(self.alignment())?)?;
+        }
+        out.write_all(b",\"landmarks\":[")?;
+        for number in (0..self.len() as u32).map(LandmarkId) {
+            out.write_all(if number.0 == 0 { b"\n" } else { b",\n" })?;
+            serde_json::to_writer(&mut out, &Row::new(self, number))?;
+        }
+        if let Some(sensing) = self.sensing() {
+            out.write_all(b"\n],\"sensors\":")?;
+            serde_json::to_writer(&mut out, sensing.sensors())?;
+            out.write_all(b",\"occluded\":[")?;
+            for (index, [a, b]) in sensing.occluded_pairs().enumerate() {
+                write!(out, "{}[{a},{b}]", if index == 0 { "" } else { "," })?;
+            }
         }
         out.write_all(b"\n],\"report\":")?;
         serde_json::to_writer(&mut out, self.report())?;
         out.write_all(b"}\n")
     }
 
-    /// Reads the map file at `path`; `-` is standard input.
+    /// Reads the map file at `path`, JSON or binary; `-` is standard input.
     ///
     /// # Errors
-    /// [`MapError::Io`] when the file cannot be read, else those of [`GlobalMap::parse_json`].
+    /// [`MapError::Io`] when the file cannot be read, [`MapError::DamagedMap`] for a binary file that is not
+    /// as it was written, else those of [`GlobalMap::parse_json`].
     pub fn load(path: &Path) -> Result<Self, MapError> {
         let (bytes, name) = if path == Path::new("-") {
             let mut bytes = Vec::new();
@@ -113,7 +162,11 @@ impl GlobalMap {
             what: "cannot be read; give a map file, as `covimap build` writes it".to_owned(),
             source,
         })?;
-        Self::parse_json(&bytes, &name)
+        if binary::is_binary(&bytes) {
+            Self::parse_binary(&bytes, &name)
+        } else {
+            Self::parse_json(&bytes, &name)
+        }
     }
 
     /// Reads the text of a map file; `file` is what errors call it.
@@ -130,27 +183,97 @@ impl GlobalMap {
         let mut settings = contents.settings;
         settings
             .extend(TOP_LEVEL.map(str::to_owned).into_iter().zip([contents.method, contents.seed.into()]));
-        let params = known_settings(settings).map_err(|error| MapError::InvalidMap {
-            what: format!("{file}: the settings cannot be read, {error}; build the map again"),
-        })?;
         let mut names = LandmarkNames::default();
         let mut landmarks = Vec::with_capacity(contents.landmarks.len());
-        for row in &contents.landmarks {
+        let mut links = Vec::new();
+        for (number, row) in (0..).map(LandmarkId).zip(&contents.landmarks) {
             names.push(&row.id);
             landmarks.push(row.placed());
+            links.extend(row.links.iter().map(|&(to, steps)| (number, LandmarkId(to), steps)));
         }
-        Self::from_parts(names, landmarks, params, contents.report).map_err(|error| match error {
-            MapError::InvalidMap { what } => MapError::InvalidMap { what: format!("{file}: {what}") },
-            other => other,
-        })
+        // A number that is missing is as bad as one out of its range.
+        let column = |of: fn(&Row) -> Option<f64>| {
+            contents.landmarks.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect()
+        };
+        let (detectability, deviation) = (column(|row| row.detectability), column(|row| row.deviation));
+        let parts = Parts { names, landmarks, detectability, deviation, links };
+        let Contents { report, alignment, sensors, occluded, .. } = contents;
+        let head = Head { settings, report, alignment, sensors, occluded };
+        head.complete(parts).map_err(|error| in_file(error, file))
+    }
+}
+
+/// What a map file says of the map as a whole, in either form.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    settings: Map<String, Value>,
+    report: BuildReport,
+    alignment: Vec<ChartFit>,
+    /// None if the map does not know its sensor.
+    sensors: Vec<SensorModel>,
+    occluded: Vec<[u32; 2]>,
+}
+
+/// What a map file says of the landmarks, in either form.
+struct Parts {
+    names: LandmarkNames,
+    landmarks: Vec<PlacedLandmark>,
+    /// Of no meaning without sensors, as is `deviation`.
+    detectability: Vec<f64>,
+    deviation: Vec<f64>,
+    links: Vec<(LandmarkId, LandmarkId, u32)>,
+}
+
+impl Head {
+    fn complete(self, parts: Parts) -> Result<GlobalMap, MapError> {
+        let params = known_settings(self.settings).map_err(|error| MapError::InvalidMap {
+            what: format!("the settings cannot be read, {error}; build the map again"),
+        })?;
+        let Parts { names, landmarks, detectability, deviation, links } = parts;
+        let lines = SightLines::from_pairs(names.len(), links)?;
+        let mut map =
+            GlobalMap::from_parts(names, landmarks, params, self.report)?.with_sight_lines(lines)?;
+        if !self.sensors.is_empty() {
+            map = map.with_sensing(Sensing::from_parts(
+                self.sensors,
+                detectability,
+                deviation,
+                &self.occluded,
+            )?)?;
+        }
+        map.alignment = self.alignment;
+        Ok(map)
+    }
+}
+
+/// Parts that contradict each other, with the name of the file that holds them.
+fn in_file(error: MapError, file: &str) -> MapError {
+    match error {
+        MapError::InvalidMap { what } => MapError::InvalidMap { what: format!("{file}: {what}") },
+        other => other,
     }
 }
 
 impl<'a> Row<'a> {
-    fn new(id: &'a str, placed: &PlacedLandmark) -> Self {
-        let [x, y] = placed.position;
-        let PlacedLandmark { component, region, sightings, partners, branch, loose, .. } = *placed;
-        Self { id: Cow::Borrowed(id), x, y, component, region, sightings, partners, branch, loose }
+    fn new(map: &'a GlobalMap, number: LandmarkId) -> Self {
+        let PlacedLandmark { position: [x, y], component, region, sightings, partners, branch, loose } =
+            map.landmarks()[number.index()];
+        let later = map.sight_lines().of(number).iter().filter(|line| line.to > number);
+        let sensing = map.sensing();
+        Self {
+            id: Cow::Borrowed(map.names().name(number)),
+            x,
+            y,
+            component,
+            region,
+            sightings,
+            partners,
+            links: later.map(|line| (line.to.0, line.steps)).collect(),
+            detectability: sensing.map(|sensing| sensing.detectability(number)),
+            branch,
+            loose,
+            deviation: sensing.map(|sensing| sensing.deviation(number)),
+        }
     }
 
     fn placed(&self) -> PlacedLandmark {

@@ -15,10 +15,14 @@ pub enum Stage {
     Stitch,
     /// Least stress over all links; counted in steps.
     Polish,
+    /// Learning the distance function, and least stress again; counted in steps.
+    Distances,
     /// Moving landmarks to where the log is most likely; counted in iterations.
     Refine,
     /// The paper's dense scaling.
     Classical,
+    /// Learning the sensor that the finished map and the log imply; counted in components.
+    Sensor,
 }
 
 /// Is told how a build goes on. All methods may be called from several threads.

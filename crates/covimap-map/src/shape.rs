@@ -44,6 +44,9 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
+    /// The links alone.
+    pub const FREE: Self = Self { pull: 0.0 };
+
     /// The links alone, unless they are few and less than half of the landmarks are in the largest branch.
     pub fn of(graph: &LinkGraph, cover: &RegionCover, stitched: &Stitched) -> Self {
         let n = graph.landmarks();

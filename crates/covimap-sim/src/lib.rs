@@ -2,6 +2,7 @@
 //!
 //! A [`WorldSpec`] and a seed make a [`World`]; a [`RunSpec`] and a seed send a robot through it. A
 //! [`Simulation`] gives one [`Step`] after another, so that a log may be longer than memory;
+//! a [`Rover`] goes where somebody else tells it to;
 //! [`Simulation::record`] keeps a [`Recording`] instead, and [`write_files`] writes log and truth. The same
 //! specifications and seeds give the same steps. Lengths are metres, angles [`Angle`]s.
 //!
@@ -26,6 +27,7 @@ mod grid;
 mod landmarks;
 mod motion;
 mod recording;
+mod rover;
 mod seed;
 mod sensor;
 mod simulation;
@@ -39,6 +41,7 @@ pub use files::{OBSERVATIONS, TRUTH, write_files, write_truth};
 pub use floor_plan::{FloorPlan, Portal};
 pub use geometry::{Point, Pose, Rect, Segment};
 pub use recording::Recording;
+pub use rover::Rover;
 pub use simulation::{Simulation, Step};
 pub use spec::{ErrorSpec, Floor, Motion, Recognition, RunSpec, SensorSpec, SimSpec, StepSpec, WorldSpec};
 pub use tally::Summary;

@@ -1,12 +1,18 @@
 //! The commands, one file each.
 
+mod align;
 mod build;
 mod check;
 mod demo;
 mod evaluate;
+mod explain;
 mod export;
 mod info;
+mod locate;
+mod near;
+mod relation;
 mod reproduce;
+mod route;
 mod simulate;
 
 use clap::{Parser, Subcommand};
@@ -19,6 +25,8 @@ Examples:
   covimap build run.jsonl                        write run.map.json
   covimap export run.map.json --to svg -o run.svg
   covimap evaluate run.map.json truth.csv
+  covimap route run.map.json door desk
+  covimap locate run.map.json --seen door,desk
 
 Results go to stdout, messages to stderr.
 Exit codes: 0 done, 1 failure, 2 usage, 3 bad input, 130 interrupted.";
@@ -40,6 +48,12 @@ enum Command {
     Evaluate(evaluate::Args),
     Export(export::Args),
     Info(info::Args),
+    Near(near::Args),
+    Locate(locate::Args),
+    Relation(relation::Args),
+    Route(route::Args),
+    Explain(explain::Args),
+    Align(align::Args),
     Check(check::Args),
     Demo(demo::Args),
     Simulate(Box<simulate::Args>),
@@ -56,8 +70,14 @@ impl Cli {
         match self.command {
             Command::Build(args) => args.run(console),
             Command::Evaluate(args) => args.run(console),
-            Command::Export(args) => args.run(),
+            Command::Export(args) => args.run(console),
             Command::Info(args) => args.run(),
+            Command::Near(args) => args.run(),
+            Command::Locate(args) => args.run(console),
+            Command::Relation(args) => args.run(console),
+            Command::Route(args) => args.run(),
+            Command::Explain(args) => args.run(),
+            Command::Align(args) => args.run(console),
             Command::Check(args) => args.run(console),
             Command::Demo(args) => args.run(console),
             Command::Simulate(args) => args.run(console),

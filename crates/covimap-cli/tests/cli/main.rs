@@ -12,6 +12,7 @@ mod export;
 mod info;
 mod interrupt;
 mod output;
+mod questions;
 mod readme;
 mod reproduce;
 mod scratch;

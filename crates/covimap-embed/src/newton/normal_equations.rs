@@ -4,7 +4,7 @@ use crate::laplacian::{Factored, LowerTriangle, components};
 use crate::{EmbedError, PairDistances, Point};
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
-pub(super) struct NormalEquations {
+pub(crate) struct NormalEquations {
     pub(super) matrix: LowerTriangle,
     /// First entry of the 2 x 2 block of each pair: columns `2i` and `2i + 1`, rows `2j`, `2j + 1`.
     block_of_pair: Vec<[usize; 2]>,

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::ComponentGraph;
+use super::{ComponentGraph, feature};
 use crate::{GlobalMap, LandmarkId};
 
 /// Writes a `FeatureCollection`, a feature a line: first every landmark as a `Point` with `id`,
@@ -47,12 +47,4 @@ fn edge(map: &GlobalMap, component: u32, from: LandmarkId, to: LandmarkId) -> Va
     let properties =
         json!({ "from": map.names().name(from), "to": map.names().name(to), "component": component });
     feature("LineString", json!([at(from), at(to)]), properties)
-}
-
-fn feature(kind: &str, coordinates: Value, properties: Value) -> Value {
-    json!({
-        "type": "Feature",
-        "geometry": { "type": kind, "coordinates": coordinates },
-        "properties": properties,
-    })
 }

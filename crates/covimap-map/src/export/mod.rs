@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`csv()`] | tables, scripts | landmarks |
 //! | [`geojson()`] | GIS programs, web maps | landmarks, Delaunay edges |
+//! | [`nav2_route()`] | the route server of Nav2 | landmarks and lines of sight of one component |
 //! | [`graphml()`] | graph programs | landmarks, Delaunay edges with their lengths |
 //! | [`ply()`] | point cloud viewers | landmarks coloured by region, Delaunay edges |
 //! | [`svg()`] | people | a picture |
@@ -18,6 +19,7 @@
 mod component_graph;
 mod geojson;
 mod graphml;
+mod nav2_route;
 mod palette;
 mod ply;
 mod svg;
@@ -26,15 +28,26 @@ mod table;
 pub use self::svg::{SvgParams, svg};
 pub use geojson::geojson;
 pub use graphml::graphml;
+pub use nav2_route::nav2_route;
 pub use ply::ply;
 pub use table::csv;
 
 use component_graph::ComponentGraph;
+use serde_json::{Value, json};
 
 /// Text that XML can hold: characters that it forbids even when escaped are replaced.
 fn xml_text(text: &str) -> String {
     let allowed = |c: char| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..);
     text.chars().map(|c| if allowed(c) { c } else { char::REPLACEMENT_CHARACTER }).collect()
+}
+
+/// A GeoJSON feature.
+fn feature(kind: &str, coordinates: Value, properties: Value) -> Value {
+    json!({
+        "type": "Feature",
+        "geometry": { "type": kind, "coordinates": coordinates },
+        "properties": properties,
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@ use covimap_embed::Point;
 use serde_json::Value;
 
 use super::*;
-use crate::{BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark};
+use crate::{BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, SightLines};
 
 /// A map of landmarks `(id, position, component, region)`.
 pub(super) fn map(rows: &[(&str, Point, u32, u32)]) -> GlobalMap {
@@ -87,6 +87,61 @@ fn graphml_escapes_ids_and_gives_edges_their_lengths() {
     assert!(text.contains("<edge source=\"n0\" target=\"n1\"><data key=\"length\">5.0</data></edge>"));
     assert!(text.contains("<edge source=\"n2\" target=\"n4\"><data key=\"length\">1.0</data></edge>"));
     assert_eq!(text.matches("<edge ").count(), 4);
+}
+
+#[test]
+fn a_route_graph_has_the_fields_that_nav2_reads() {
+    let lines = [(0, 1, 5), (0, 3, 8), (2, 4, 1)].map(|(a, b, steps)| (LandmarkId(a), LandmarkId(b), steps));
+    let map = two_components().with_sight_lines(SightLines::from_pairs(5, lines).unwrap()).unwrap();
+    let graph = |component| {
+        let mut bytes = Vec::new();
+        nav2_route(&map, component).unwrap()(&mut bytes).unwrap();
+        serde_json::from_slice::<Value>(&bytes).unwrap()
+    };
+    let json = graph(0);
+    assert_eq!(json["type"], "FeatureCollection");
+    let features = json["features"].as_array().unwrap();
+    assert!(features.iter().all(|feature| feature["type"] == "Feature"));
+    // Three landmarks, two lines of sight in both directions.
+    let (nodes, edges) = features.split_at(3);
+    assert_eq!(edges.len(), 4);
+    assert_eq!(
+        nodes[1],
+        serde_json::json!({
+            "type": "Feature",
+            "geometry": { "type": "Point", "coordinates": [3.0, 4.0] },
+            "properties": {
+                "id": 1, "frame": "map", "metadata": { "landmark": "far, \"b\"", "region": 1, "sightings": 8 },
+            },
+        })
+    );
+    assert_eq!(
+        edges[1],
+        serde_json::json!({
+            "type": "Feature",
+            "geometry": { "type": "MultiLineString", "coordinates": [[[3.0, 4.0], [0.0, 0.0]]] },
+            "properties": {
+                "id": 6, "startid": 1, "endid": 0, "cost": 5.0, "overridable": true, "metadata": { "steps": 5 },
+            },
+        })
+    );
+    let ids: Vec<u64> =
+        features.iter().map(|feature| feature["properties"]["id"].as_u64().unwrap()).collect();
+    assert_eq!(ids, [0, 1, 3, 5, 6, 7, 8]);
+    let ends = |edge: &Value| {
+        [&edge["properties"]["startid"], &edge["properties"]["endid"]].map(|v| v.as_u64().unwrap())
+    };
+    assert_eq!(edges.iter().map(ends).collect::<Vec<_>>(), [[0, 1], [1, 0], [0, 3], [3, 0]]);
+    assert_eq!(graph(1)["features"].as_array().unwrap().len(), 4);
+}
+
+#[test]
+fn a_component_without_a_road_makes_no_route_graph() {
+    let refusal = |map: &GlobalMap, component| nav2_route(map, component).err().unwrap().to_string();
+    let told = "component 0 of the map has no line of sight, so there is no route in it; give another component, or \
+                build a map that holds none at all again from its log";
+    assert_eq!(refusal(&two_components(), 0), told);
+    assert_eq!(refusal(&map(&[]), 0), told);
 }
 
 #[test]

@@ -21,29 +21,14 @@ fn distance_and_weight_computed_by_hand() {
     let graph = LinkGraph::from_counts(&CoVisibility::count(&log, &Silent).unwrap());
     assert_eq!((graph.landmarks(), graph.link_count()), (4, 4));
     let link = |a: u32, b: u32| *graph.of(a).iter().find(|link| link.to == b).unwrap();
-    // A and B: n_A = 3, n_B = 3, n_AB = 2, so f = (2 + 1/2) / (3 + 3 - 2 + 1) = 1/2; the weight is sqrt 2.
-    // The lens of two discs, l = 2/3: at u = d / 1.2 = 0.264932, acos u = 1.302663, u sqrt(1 - u^2) =
-    // 0.255465, and 2/pi (1.302663 - 0.255465) = 2/pi 1.047198 = 2/3.
-    assert!((link(0, 1).distance - 1.2 * 0.264_932).abs() < 2e-6, "{:?}", link(0, 1));
+    // A and B: n_A = 3, n_B = 3, n_AB = 2, so f = (2 + 1/2) / (3 + 3 - 2 + 1) = 1/2 and
+    // d = sqrt(0.3 ln 2) = sqrt(0.2079442) = 0.4560090; the weight is sqrt 2.
+    assert!((link(0, 1).distance - 0.456_009_0).abs() < 1e-7);
     assert_eq!(link(0, 1).weight, 2.0_f64.sqrt());
-    // A and C: n_A = 3, n_C = 1, n_AC = 1, so f = 1.5 / 4 = 3/8 and l = 6/11.
-    let u = link(2, 0).distance / 1.2;
-    let l = 2.0 / PI * (u.acos() - u * (1.0 - u * u).sqrt());
-    assert!((l - 6.0 / 11.0).abs() < 2e-6, "{u} {l}");
+    // A and C: n_A = 3, n_C = 1, n_AC = 1, so f = 1.5 / 4 and d = sqrt(0.3 * 0.9808293) = 0.5424470.
+    assert!((link(2, 0).distance - 0.542_447_0).abs() < 1e-7);
     assert_eq!(link(2, 0).weight, 1.0);
     assert_eq!(graph.of(3), [Link { to: 1, ..link(3, 1) }]);
-}
-
-#[test]
-fn the_table_of_the_lens_against_bisection() {
-    for k in 1..2000 {
-        let f = f64::from(k) / 2000.0;
-        let exact = inverse_lens(2.0 * f / (1.0 + f));
-        assert!((lens_distance(f) - exact).abs() < 1e-6, "{f} {exact} {}", lens_distance(f));
-    }
-    for f in [1e-12, 1e-6, 1.0 - 1e-6, 1.0 - 1e-12] {
-        assert!(lens_distance(f) > 0.0 && lens_distance(f) < 1.0, "{f} {}", lens_distance(f));
-    }
 }
 
 #[test]

@@ -1,12 +1,13 @@
+use covimap_embed::{DistanceCurve, DistanceFamily, Lens};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{ComponentReport, Method, Warning};
+use crate::{ComponentReport, DistanceReport, FamilyScore, HonestyReport, Method, ShepardRow, Warning};
 
-const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
-{"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1,"branch":0,"loose":false},
+const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"distance":"auto","local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
+{"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1,"links":[[1,2]],"branch":0,"loose":false},
 {"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1,"branch":0,"loose":false}
-],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
+],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"honesty":{"set_aside":0,"misrecognition":null},"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
 "#;
 
 fn text(map: &GlobalMap) -> String {
@@ -35,7 +36,27 @@ fn the_file_says_what_the_map_holds() {
         PlacedLandmark { position: [1e-7, -0.0], region: 1, sightings: 2, partners: 1, ..Default::default() };
     assert_eq!(map.landmarks()[1], expected);
     assert_eq!((map.report().steps, map.report().stress1), (4, 0.25));
+    let lines: Vec<_> = map.sight_lines().pairs().collect();
+    assert_eq!(lines, [(LandmarkId(0), LandmarkId(1), 2)]);
     assert_eq!(text(&map), SMALL);
+}
+
+#[test]
+fn a_file_without_lines_of_sight_is_a_map_that_knows_none() {
+    let older = SMALL.replace(r#","links":[[1,2]]"#, "");
+    let map = parse(&older).unwrap();
+    assert_eq!(map.sight_lines().count(), 0);
+    assert_eq!(text(&map), older);
+}
+
+#[test]
+fn the_frame_of_an_aligned_map_stands_in_the_file() {
+    let fit = ChartFit { component: 0, scale: 0.5, anchors: 3, distances: 1, rmse: 0.1, handed: true };
+    let map = parse(SMALL).unwrap().with_positions(&[[1.0, 2.0], [3.0, 4.5]], vec![fit]).unwrap();
+    let key =
+        r#","alignment":[{"component":0,"scale":0.5,"anchors":3,"distances":1,"rmse":0.1,"handed":true}],"#;
+    assert!(text(&map).contains(key));
+    assert_eq!(parse(&text(&map)).unwrap(), map);
 }
 
 #[test]
@@ -96,6 +117,10 @@ fn contradictions_are_refused() {
         refusal(r#""say \"B\"""#, r#""A""#),
         "map.json: landmark 1 has the ID \"A\" of another one; build the map again"
     );
+    let told = |links| refusal(r#"[[1,2]]"#, links);
+    assert!(told("[[1,3]]").starts_with("map.json: the line of sight between landmarks 0 and 1 has 3 steps"));
+    assert!(told("[[0,1]]").contains("landmarks 0 and 0"));
+    assert!(told("[[2,1]]").contains("landmarks 0 and 2"));
     let settings = refusal(r#""phi2""#, r#""phi9""#);
     assert!(
         settings.starts_with("map.json: the settings cannot be read, unknown variant `phi9`"),
@@ -113,6 +138,19 @@ fn a_path_that_cannot_be_read_is_named() {
             .ends_with("map.json: cannot be read; give a map file, as `covimap build` writes it")
     );
     assert!(matches!(GlobalMap::load(folder.path()), Err(MapError::Io { .. })));
+}
+
+fn distances(number: f64) -> DistanceReport {
+    DistanceReport {
+        learnt: true,
+        curve: DistanceCurve::Lens(Lens { range: number / 7.0, detectability: number }),
+        scores: vec![FamilyScore { family: DistanceFamily::Lens, held_out: -1e6 * number }],
+        sample: 3,
+        repetition: number,
+        misfit: number,
+        doubted: number,
+        shepard: vec![ShepardRow { pairs: 3, frequency: number, expected: number, distances: [number; 5] }],
+    }
 }
 
 proptest! {
@@ -136,8 +174,10 @@ proptest! {
         let params = MapperParams { seed, ..MapperParams::default() };
         let report = BuildReport {
             stress1,
+            honesty: HonestyReport { set_aside: seed, misrecognition: Some(stress1) },
             components: vec![ComponentReport {
-                landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true, ..Default::default()
+                landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true,
+                distances: Some(distances(stress1)), ..Default::default()
             }],
             warnings: vec![Warning {
                 kind: "seen_once".into(), count: 1, examples: vec!["\u{1F916}".into()], message: "a\nb".into(),
@@ -151,6 +191,9 @@ proptest! {
         let loaded = GlobalMap::load(&path).unwrap();
         prop_assert_eq!(&loaded, &map);
         prop_assert_eq!(text(&loaded).into_bytes(), fs::read(&path).unwrap());
+        let mut binary = Vec::new();
+        map.write_binary(&mut binary).unwrap();
+        prop_assert_eq!(&GlobalMap::parse_binary(&binary, "map.covimap").unwrap(), &map);
         // One line a landmark, one before and one after.
         prop_assert_eq!(text(&map).lines().count(), rows.len() + 2);
     }

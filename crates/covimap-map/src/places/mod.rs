@@ -6,8 +6,8 @@
 //!
 //! `P_i(y) = e + (p_i - e) / (1 + exp((|y - x_i| - R) / s))`  (1)
 //!
-//! with a range `R` and an edge width `s` shared by all, and a detectability `p_i` of each
-//! landmark. The log-likelihood of the log is, up to a constant,
+//! with a range `R`, an edge width `s` and a probability `e` of a false sighting shared by all, and a
+//! detectability `p_i` of each landmark. The log-likelihood of the log is, up to a constant,
 //!
 //! `sum_t ln sum_y prod_{i seen at t} P_i(y) prod_{j not seen, but near} (1 - P_j(y))`.  (2)
 //!
@@ -21,7 +21,7 @@
 //! # Algorithm
 //! Expectation-maximisation. The posterior of each step's place is taken on a [`grid`] around the
 //! landmarks seen ([`posterior`]); then every landmark makes one Fisher-scoring step in position
-//! and detectability ([`scoring`]), and `s` one in common ([`sensor`]). `R` is fitted first and
+//! and detectability ([`scoring`]), and `s` and `e` one in common ([`sensor`]). `R` is fitted first and
 //! then held: it fixes the unit.
 //!
 //! # Complexity
@@ -38,6 +38,7 @@
 //! Econometrica 16, 1948.
 
 mod grid;
+mod observe;
 mod posterior;
 mod scoring;
 mod sensor;
@@ -49,10 +50,11 @@ use covimap_embed::Point;
 use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
+pub(crate) use observe::observe;
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 pub(crate) use sensor::Sensor;
-use sensor::SensorScores;
+use sensor::{FALSE_SIGHTING, SensorScores};
 pub(crate) use sets::SeenSets;
 
 /// Sets of one parallel task.
@@ -90,14 +92,8 @@ pub(crate) fn refine(
     iterations: usize,
     observer: &dyn Observer,
 ) -> Result<Model, MapError> {
-    let range = half_far_link(graph, &start);
     let neighbours = Neighbours::new(graph);
-    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
-    let mut model = Model { detectability: Vec::new(), points: start, sensor };
-    for _ in 0..SENSOR_STEPS {
-        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
-        model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, true);
-    }
+    let mut model = fit_sensor(graph, &neighbours, sets, start);
     for _ in 0..iterations {
         let scores = landmark_scores(&neighbours, sets, &model, observer)?;
         let moved = model.move_landmarks(&scores);
@@ -108,6 +104,19 @@ pub(crate) fn refine(
         }
     }
     Ok(model)
+}
+
+/// The sensor that fits these positions best; detectabilities are all the same so far.
+fn fit_sensor(graph: &LinkGraph, neighbours: &Neighbours, sets: &SeenSets, points: Vec<Point>) -> Model {
+    let range = half_far_link(graph, &points);
+    let false_sighting = FALSE_SIGHTING.0;
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8, false_sighting };
+    let mut model = Model { detectability: Vec::new(), points, sensor };
+    for _ in 0..SENSOR_STEPS {
+        model.detectability = vec![model.sensor.detectability; graph.landmarks()];
+        model.sensor = sensor_scores(neighbours, sets, &model).improve(model.sensor, true);
+    }
+    model
 }
 
 impl Model {

@@ -5,12 +5,15 @@
 //! posterior weight `g` adds `g r D` to the score and `g D D' / (P (1 - P))` to the information.
 //! `D = -(p - e) v (1 - v) / (s d) (x - y)` for the position `x`, `y` being the place, and `D = v` for the
 //! detectability `p`.
+//!
+//! That information takes the places for known. What a log really says about a position is the sum
+//! over steps of `(sum_y g r D) (sum_y g r D)'`: a step that leaves its place open has a small score.
 
 use covimap_embed::Point;
 
 use super::grid::{CELLS, Sight};
 use super::posterior::{Step, Witness};
-use super::sensor::{DETECTABILITY, FALSE_SIGHTING};
+use super::sensor::DETECTABILITY;
 
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
@@ -24,6 +27,8 @@ pub(super) struct Scores {
     position: Point,
     /// Information of the position: xx, xy, yy.
     information: [f64; 3],
+    /// Observed information of the position, in which the places are unknown: xx, xy, yy.
+    observed: [f64; 3],
     detectability: f64,
     detectability_information: f64,
 }
@@ -67,7 +72,7 @@ impl Scores {
     /// Of a landmark, from one step.
     fn of(witness: &Witness, step: &Step, sight: &Sight) -> Self {
         let [x, y] = witness.cutting.offset;
-        let by_sight = witness.detectability - FALSE_SIGHTING;
+        let by_sight = witness.detectability - sight.false_sighting;
         let seen = f32::from(u8::from(witness.seen));
         let along: Lanes = std::array::from_fn(|column| x - column as f32);
         let zero: Lanes = [0.0; CELLS];
@@ -79,7 +84,7 @@ impl Scores {
             let slope = sight.slope(witness.cutting, row);
             for k in 0..CELLS {
                 let v = visibility[k];
-                let probability = FALSE_SIGHTING + by_sight * v;
+                let probability = sight.false_sighting + by_sight * v;
                 let information = weights[k] / (probability * (1.0 - probability));
                 let surprise = information * (seen - probability);
                 let by_offset = by_sight * slope[k];
@@ -96,8 +101,10 @@ impl Scores {
             }
         }
         let sum = |lanes: Lanes| f64::from(lanes.iter().sum::<f32>());
+        let [x, y] = [sum(gx), sum(gy)];
         Self {
-            position: [sum(gx), sum(gy)],
+            position: [x, y],
+            observed: [x * x, x * y, y * y],
             information: [sum(xx), sum(xy), sum(yy)],
             detectability: sum(gp),
             detectability_information: sum(pp),
@@ -108,6 +115,9 @@ impl Scores {
         self.position[0] += times * other.position[0];
         self.position[1] += times * other.position[1];
         for (sum, more) in self.information.iter_mut().zip(other.information) {
+            *sum += times * more;
+        }
+        for (sum, more) in self.observed.iter_mut().zip(other.observed) {
             *sum += times * more;
         }
         self.detectability += times * other.detectability;
@@ -135,6 +145,16 @@ impl Scores {
         let (xx, yy) = (xx + ridge, yy + ridge);
         let determinant = xx * yy - xy * xy;
         (determinant > 0.0).then(|| [yy, -xy, xx].map(|entry| entry / determinant))
+    }
+
+    /// Standard deviation of a coordinate, both axes taken together, that the log leaves to the
+    /// position; `loosest` where it says nothing.
+    pub fn deviation(&self, loosest: f64) -> f64 {
+        let [xx, xy, yy] = self.observed;
+        let least = 1.0 / (loosest * loosest);
+        let (xx, yy) = (xx + least, yy + least);
+        // Half the trace of the inverse.
+        ((xx + yy) / (2.0 * (xx * yy - xy * xy))).sqrt()
     }
 
     /// The detectability after a Fisher-scoring step from `p`, drawn towards the `common` one.

@@ -22,7 +22,7 @@ use crate::spec::{Motion, RunSpec};
 use crate::world::World;
 use patches::Patches;
 use route::Route;
-use walker::Walker;
+pub(crate) use walker::Walker;
 
 /// Chooses the next place.
 trait Pilot: Send {

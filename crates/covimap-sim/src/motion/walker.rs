@@ -20,7 +20,7 @@ const TURNS: [f64; 7] = [1.0, -1.0, 2.0, -2.0, 3.0, -3.0, 4.0];
 const MOST_DRAWS: usize = 10_000;
 
 /// Takes steps that keep clear of walls and of solid landmarks.
-pub(super) struct Walker<'w> {
+pub(crate) struct Walker<'w> {
     space: FreeSpace<'w>,
     walls: BoxGrid<Segment>,
     /// Middles of solid landmarks.
@@ -32,7 +32,7 @@ pub(super) struct Walker<'w> {
 }
 
 impl<'w> Walker<'w> {
-    pub(super) fn new(world: &'w World, step: StepSpec, rng: ChaCha8Rng) -> Result<Self, SimError> {
+    pub(crate) fn new(world: &'w World, step: StepSpec, rng: ChaCha8Rng) -> Result<Self, SimError> {
         let bounds = world.plan().bounds();
         let keep_off = step.clearance + world.diameter() / 2.0;
         let mut walker = Self {
@@ -70,7 +70,7 @@ impl<'w> Walker<'w> {
     }
 
     /// A random free place and direction.
-    pub(super) fn start(&mut self) -> Pose {
+    pub(crate) fn start(&mut self) -> Pose {
         Pose { at: self.place(), heading: self.rng.random_range(0.0..2.0 * PI) }
     }
 
@@ -100,7 +100,7 @@ impl<'w> Walker<'w> {
     }
 
     /// Whether the straight way between the two places keeps clear of everything.
-    fn is_free(&self, from: Point, to: Point) -> bool {
+    pub(crate) fn is_free(&self, from: Point, to: Point) -> bool {
         let way = Segment { a: from, b: to };
         if self.walls.near(from).iter().any(|wall| wall.distance_to(&way) <= self.step.clearance) {
             return false;

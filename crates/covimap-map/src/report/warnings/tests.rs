@@ -19,10 +19,17 @@ fn about(steps: &[&[&str]], components: &[ComponentReport]) -> Vec<(String, u64,
     let log = SightingLog::from_steps(steps.iter().map(|step| step.iter().copied()));
     let counts = counts_of(&log);
     let placed = vec![PlacedLandmark::default(); counts.landmarks()];
-    warnings(&counts, &LinkGraph::from_counts(&counts), &placed, components, log.names())
-        .into_iter()
-        .map(|warning| (warning.kind, warning.count, warning.examples))
-        .collect()
+    warnings(
+        &counts,
+        &LinkGraph::from_counts(&counts),
+        HonestyReport::default(),
+        &placed,
+        components,
+        log.names(),
+    )
+    .into_iter()
+    .map(|warning| (warning.kind, warning.count, warning.examples))
+    .collect()
 }
 
 fn warning(kind: &str, count: u64, examples: &[&str]) -> (String, u64, Vec<String>) {
@@ -114,6 +121,7 @@ fn hinges_and_the_first_of_them_in_words() {
     let found = warnings(
         &counts,
         &LinkGraph::from_counts(&counts),
+        HonestyReport::default(),
         &placed,
         &[hanging, component(3, true)],
         log.names(),
@@ -146,8 +154,37 @@ fn landmarks_whose_partners_lie_on_a_line() {
     let counts = counts_of(&log);
     let mut placed = vec![PlacedLandmark::default(); counts.landmarks()];
     placed[3].loose = true;
-    let found =
-        warnings(&counts, &LinkGraph::from_counts(&counts), &placed, &[component(5, true)], log.names());
+    let found = warnings(
+        &counts,
+        &LinkGraph::from_counts(&counts),
+        HonestyReport::default(),
+        &placed,
+        &[component(5, true)],
+        log.names(),
+    );
     let kinds: Vec<_> = found.iter().map(|w| (w.kind.as_str(), w.examples.clone())).collect();
     assert_eq!(kinds, [("partners_on_a_line", vec!["D".to_owned()])]);
+}
+
+#[test]
+fn misrecognition_is_told_where_it_is_notable() {
+    let log = SightingLog::from_steps(SOUND.iter().map(|step| step.iter().copied()));
+    let counts = counts_of(&log);
+    let found = |misrecognition, set_aside| {
+        let honesty = HonestyReport { set_aside, misrecognition };
+        warnings(
+            &counts,
+            &LinkGraph::from_counts(&counts),
+            honesty,
+            &[PlacedLandmark::default(); 5],
+            &[component(5, true)],
+            log.names(),
+        )
+    };
+    let warning = &found(Some(0.0213), 412)[0];
+    assert_eq!((warning.kind.as_str(), warning.count, warning.examples.len()), ("misrecognition", 412, 0));
+    assert!(warning.message.contains("about 2.1 % of the sightings"), "{}", warning.message);
+    for silent in [found(None, 0), found(Some(0.0), 0), found(Some(0.0019), 12)] {
+        assert_eq!(silent, []);
+    }
 }

@@ -1,0 +1,213 @@
+//! The binary form of a map file, for maps that are loaded often or are large.
+//!
+//! Numbers are little-endian; lists have no padding. `n` landmarks and `m` lines of sight:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | `covimap` and a zero byte |
+//! | 4 | format, 1 |
+//! | 8 + h | length h of the head, and the head: JSON of settings, report, alignment, sensors and occluded pairs |
+//! | 8, 8, 8 | n, m, and the length t of all IDs together |
+//! | 4 n, t | length of each ID, the IDs in UTF-8 |
+//! | 16 n | x and y, 64-bit floats |
+//! | 24 n | component, region, sightings, partners, branch, and 1 if it is loose or 0 |
+//! | 16 n | detectability and deviation, 64-bit floats, unless the head has no sensors |
+//! | 12 m | number of the first landmark, of the second, and steps that show both |
+//! | 4 | CRC-32 of all bytes before |
+//!
+//! The bytes depend on the map alone, and give back an equal map.
+
+use std::io::{self, Write};
+
+use super::{FORMAT, Head, Parts, in_file, object};
+use crate::{GlobalMap, LandmarkId, LandmarkNames, MapError, PlacedLandmark, Sensing};
+
+/// Ending of names of files in this form.
+pub(super) const BINARY_EXTENSION: &str = "covimap";
+
+const MAGIC: &[u8] = b"covimap\0";
+
+/// Whether these are the first bytes of a map file in this form.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
+impl GlobalMap {
+    /// Writes the binary form of the map file.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_binary(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut out = Summed { out, sum: crc32fast::Hasher::new() };
+        let head = serde_json::to_vec(&Head {
+            settings: object(self.params())?,
+            report: self.report().clone(),
+            alignment: self.alignment().to_vec(),
+            sensors: self.sensing().map_or(Vec::new(), |sensing| sensing.sensors().to_vec()),
+            occluded: self.sensing().into_iter().flat_map(Sensing::occluded_pairs).collect(),
+        })?;
+        out.write_all(MAGIC)?;
+        out.write_all(&(FORMAT as u32).to_le_bytes())?;
+        out.write_all(&(head.len() as u64).to_le_bytes())?;
+        out.write_all(&head)?;
+        let letters = self.names().iter().map(str::len).sum::<usize>();
+        for size in [self.len(), self.sight_lines().count(), letters] {
+            out.write_all(&(size as u64).to_le_bytes())?;
+        }
+        for name in self.names().iter() {
+            out.write_all(&(name.len() as u32).to_le_bytes())?;
+        }
+        for name in self.names().iter() {
+            out.write_all(name.as_bytes())?;
+        }
+        for coordinate in self.landmarks().iter().flat_map(|placed| placed.position) {
+            out.write_all(&coordinate.to_le_bytes())?;
+        }
+        for placed in self.landmarks() {
+            let PlacedLandmark { component, region, sightings, partners, branch, loose, .. } = *placed;
+            for number in [component, region, sightings, partners, branch, u32::from(loose)] {
+                out.write_all(&number.to_le_bytes())?;
+            }
+        }
+        if let Some(sensing) = self.sensing() {
+            for id in (0..self.len() as u32).map(LandmarkId) {
+                out.write_all(&sensing.detectability(id).to_le_bytes())?;
+                out.write_all(&sensing.deviation(id).to_le_bytes())?;
+            }
+        }
+        for number in self.sight_lines().pairs().flat_map(|(a, b, steps)| [a.0, b.0, steps]) {
+            out.write_all(&number.to_le_bytes())?;
+        }
+        let sum = out.sum.finalize();
+        out.out.write_all(&sum.to_le_bytes())
+    }
+
+    /// Reads the binary form of a map file; `file` is what errors call it.
+    ///
+    /// # Errors
+    /// [`MapError::DamagedMap`] for bytes that are not as they were written, [`MapError::MapFormat`]
+    /// for another format, [`MapError::InvalidMap`] for landmarks that contradict each other.
+    pub fn parse_binary(bytes: &[u8], file: &str) -> Result<Self, MapError> {
+        let damaged = |what: String| MapError::DamagedMap { file: file.to_owned(), what };
+        let mut rest = Rest(bytes);
+        let begin = |rest: &mut Rest| {
+            if rest.take(MAGIC.len())? != MAGIC {
+                return Err("it does not begin as one".to_owned());
+            }
+            rest.number()
+        };
+        let found = u64::from(begin(&mut rest).map_err(damaged)?);
+        if found != FORMAT {
+            return Err(MapError::MapFormat { file: file.to_owned(), found, known: FORMAT });
+        }
+        check_sum(bytes).map_err(damaged)?;
+        let (head, parts) = contents(&mut rest).map_err(damaged)?;
+        head.complete(parts).map_err(|error| in_file(error, file))
+    }
+}
+
+fn check_sum(bytes: &[u8]) -> Result<(), String> {
+    let (body, sum) = bytes.split_last_chunk().ok_or("it ends too early")?;
+    let (told, found) = (u32::from_le_bytes(*sum), crc32fast::hash(body));
+    let what = || format!("its check sum is {found:08x} instead of {told:08x}");
+    if found == told { Ok(()) } else { Err(what()) }
+}
+
+/// What stands between the format and the check sum.
+fn contents(rest: &mut Rest) -> Result<(Head, Parts), String> {
+    let length = rest.size()?;
+    let head: Head =
+        serde_json::from_slice(rest.take(length)?).map_err(|error| format!("its head, {error}"))?;
+    let [landmarks, lines, letters] = [rest.size()?, rest.size()?, rest.size()?];
+    let names = names(rest.numbers(landmarks)?, rest.take(letters)?)?;
+    let coordinates = rest.list(landmarks, f64::from_le_bytes, 2)?;
+    let numbers = rest.list(landmarks, u32::from_le_bytes, 6)?;
+    let placed = |(&position, numbers): (&_, &[u32; 6])| {
+        let [component, region, sightings, partners, branch, loose] = *numbers;
+        PlacedLandmark { position, component, region, sightings, partners, branch, loose: loose != 0 }
+    };
+    let sensed = if head.sensors.is_empty() { 0 } else { landmarks };
+    let sensing = rest.list(sensed, f64::from_le_bytes, 2)?;
+    let links = rest.list(lines, u32::from_le_bytes, 3)?;
+    let link = |&[a, b, steps]: &[u32; 3]| (LandmarkId(a), LandmarkId(b), steps);
+    let parts = Parts {
+        names,
+        landmarks: coordinates.as_chunks().0.iter().zip(numbers.as_chunks().0).map(placed).collect(),
+        detectability: sensing.iter().copied().step_by(2).collect(),
+        deviation: sensing.iter().copied().skip(1).step_by(2).collect(),
+        links: links.as_chunks().0.iter().map(link).collect(),
+    };
+    match rest.0.len() {
+        4 => Ok((head, parts)),
+        left => Err(format!("{left} bytes are left where 4 should be")),
+    }
+}
+
+fn names(lengths: Vec<u32>, text: &[u8]) -> Result<LandmarkNames, String> {
+    let text = std::str::from_utf8(text).map_err(|error| format!("its IDs are no text, {error}"))?;
+    let mut names = LandmarkNames::default();
+    let mut start = 0;
+    for length in lengths {
+        let end = start + length as usize;
+        names.push(text.get(start..end).ok_or("the lengths of its IDs do not add up")?);
+        start = end;
+    }
+    Ok(names)
+}
+
+/// What is not read yet.
+struct Rest<'a>(&'a [u8]);
+
+impl<'a> Rest<'a> {
+    fn take(&mut self, length: usize) -> Result<&'a [u8], String> {
+        let short = || format!("it ends {} bytes too early", length - self.0.len());
+        let (taken, rest) = self.0.split_at_checked(length).ok_or_else(short)?;
+        self.0 = rest;
+        Ok(taken)
+    }
+
+    /// So many groups of `group` values of `N` bytes.
+    fn list<const N: usize, T>(
+        &mut self,
+        count: usize,
+        value: impl Fn([u8; N]) -> T,
+        group: usize,
+    ) -> Result<Vec<T>, String> {
+        let length = count.checked_mul(N * group).ok_or("its sizes are beyond any memory")?;
+        Ok(self.take(length)?.as_chunks().0.iter().copied().map(value).collect())
+    }
+
+    fn numbers(&mut self, count: usize) -> Result<Vec<u32>, String> {
+        self.list(count, u32::from_le_bytes, 1)
+    }
+
+    fn number(&mut self) -> Result<u32, String> {
+        Ok(self.numbers(1)?[0])
+    }
+
+    fn size(&mut self) -> Result<usize, String> {
+        let size = self.list(1, u64::from_le_bytes, 1)?[0];
+        usize::try_from(size).map_err(|_| "its sizes are beyond any memory".to_owned())
+    }
+}
+
+/// Writes and keeps the check sum of what was written.
+struct Summed<'a> {
+    out: &'a mut dyn Write,
+    sum: crc32fast::Hasher,
+}
+
+impl Write for Summed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests;

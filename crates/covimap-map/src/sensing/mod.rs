@@ -1,0 +1,223 @@
+//! What a map knows of the sensor that made its log: from where, how often and how reliably each
+//! landmark is seen, and how well its own place is known.
+//!
+//! A landmark `i` is seen from a place `y` in open sight with probability
+//!
+//! `P_i(y) = p_i v(|y - x_i|)`, `v(d) = 1 / (1 + exp((d - R) / s))`  (1)
+//!
+//! with a range `R` and an edge `s` of the whole chart and a detectability `p_i` of its own. A share
+//! of all sightings is false and may name any landmark. Pairs that stand near each other and yet are hardly
+//! ever seen together are *occluded* from each other: something, a wall as a rule, stands between them. From
+//! where one of them is seen, not seeing the other says nothing.
+
+mod occlusion;
+mod warp;
+
+use covimap_embed::Point;
+
+use crate::places::{SeenSets, observe};
+use crate::{CoVisibility, LandmarkId, LinkGraph, MapError, Observer, PlacedLandmark, Stage};
+
+/// The sensor of one component, lengths in map units.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SensorModel {
+    /// Distance `R` at which the chance to be seen is half that of close by, `> 0`.
+    pub range: f64,
+    /// Width `s` of the soft edge, `> 0`: from `R - 2 s` to `R + 2 s` the chance falls from 88 to 12 %.
+    pub edge: f64,
+    /// Chance to be seen from close by of a landmark of which nothing else is known, in `(0, 1)`.
+    pub detectability: f64,
+    /// Share of the sightings that are false, in `(0, 1)`.
+    pub outliers: f64,
+    /// Standard deviation of a coordinate, `>= 0`, by which the chart as a whole is bent: the same for
+    /// neighbours, and so without effect on what lies where among them. 0 in files that do not tell.
+    #[serde(default)]
+    pub warp: f64,
+}
+
+impl SensorModel {
+    /// The visibility curve `v(d)` of eq. (1), in `(0, 1)`.
+    #[must_use]
+    pub fn visibility(&self, distance: f64) -> f64 {
+        1.0 / (1.0 + ((distance - self.range) / self.edge).exp())
+    }
+
+    fn is_sound(&self) -> bool {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let share = |value: f64| value > 0.0 && value < 1.0;
+        let lengths =
+            positive(self.range) && positive(self.edge) && self.warp >= 0.0 && self.warp.is_finite();
+        lengths && share(self.detectability) && share(self.outliers)
+    }
+}
+
+/// What a map knows of its sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensing {
+    /// By component.
+    sensors: Vec<SensorModel>,
+    /// By landmark.
+    detectability: Vec<f64>,
+    deviation: Vec<f64>,
+    /// Where the occluded partners of each landmark start in `occluded`, and at last their number.
+    starts: Vec<usize>,
+    occluded: Vec<u32>,
+}
+
+impl Sensing {
+    /// Puts the parts together: a sensor for every component, a detectability in `(0, 1)` and a standard
+    /// deviation `> 0` for every landmark, and each occluded pair once, in any order.
+    ///
+    /// # Errors
+    /// [`MapError::InvalidMap`] for a number out of its range, lists of different length, and a pair of one
+    /// landmark with itself or with one that is not there.
+    pub fn from_parts(
+        sensors: Vec<SensorModel>,
+        detectability: Vec<f64>,
+        deviation: Vec<f64>,
+        occluded: &[[u32; 2]],
+    ) -> Result<Self, MapError> {
+        let invalid =
+            |what: String| Err(MapError::InvalidMap { what: format!("{what}; build the map again") });
+        if let Some(component) = sensors.iter().position(|sensor| !sensor.is_sound()) {
+            return invalid(format!("the sensor of component {component} is {:?}", sensors[component]));
+        }
+        let n = detectability.len();
+        if deviation.len() != n {
+            return invalid(format!("{n} detectabilities and {} deviations", deviation.len()));
+        }
+        for (landmark, (&p, &d)) in detectability.iter().zip(&deviation).enumerate() {
+            if !(p > 0.0 && p < 1.0 && d > 0.0 && d.is_finite()) {
+                return invalid(format!("landmark {landmark} has detectability {p} and deviation {d}"));
+            }
+        }
+        if let Some([a, b]) = occluded.iter().find(|[a, b]| a == b || *a.max(b) as usize >= n) {
+            return invalid(format!("landmarks {a} and {b} of {n} are said to be occluded"));
+        }
+        let mut both: Vec<[u32; 2]> = occluded.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
+        both.sort_unstable();
+        both.dedup();
+        let starts = (0..=n).map(|i| both.partition_point(|pair| (pair[0] as usize) < i)).collect();
+        let occluded = both.into_iter().map(|pair| pair[1]).collect();
+        Ok(Self { sensors, detectability, deviation, starts, occluded })
+    }
+
+    /// The sensor in the units of a component's chart.
+    ///
+    /// # Panics
+    /// If the map has no such component.
+    #[must_use]
+    pub fn sensor(&self, component: u32) -> &SensorModel {
+        &self.sensors[component as usize]
+    }
+
+    /// The sensors of all components.
+    #[must_use]
+    pub fn sensors(&self) -> &[SensorModel] {
+        &self.sensors
+    }
+
+    /// Chance to see a landmark from close by, `p_i` of eq. (1).
+    #[must_use]
+    pub fn detectability(&self, id: LandmarkId) -> f64 {
+        self.detectability[id.index()]
+    }
+
+    /// Standard deviation of a coordinate of a landmark against the landmarks around it, map units. What
+    /// bends the map as a whole is not in it.
+    #[must_use]
+    pub fn deviation(&self, id: LandmarkId) -> f64 {
+        self.deviation[id.index()]
+    }
+
+    /// The near landmarks that are hardly ever seen together with this one, ascending.
+    #[must_use]
+    pub fn occluded_from(&self, id: LandmarkId) -> &[u32] {
+        &self.occluded[self.starts[id.index()]..self.starts[id.index() + 1]]
+    }
+
+    /// Every occluded pair once, ascending.
+    pub(crate) fn occluded_pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        (0..self.detectability.len() as u32).flat_map(|i| {
+            self.occluded_from(LandmarkId(i)).iter().filter(move |&&j| j > i).map(move |&j| [i, j])
+        })
+    }
+
+    /// The same in charts whose units are `ratio` times as many, by component.
+    pub(crate) fn scaled(mut self, landmarks: &[PlacedLandmark], ratio: impl Fn(u32) -> f64) -> Self {
+        for (component, sensor) in (0..).zip(&mut self.sensors) {
+            sensor.range *= ratio(component);
+            sensor.edge *= ratio(component);
+            sensor.warp *= ratio(component);
+        }
+        for (deviation, placed) in self.deviation.iter_mut().zip(landmarks) {
+            *deviation *= ratio(placed.component);
+        }
+        self
+    }
+
+    pub(crate) fn landmarks(&self) -> usize {
+        self.detectability.len()
+    }
+}
+
+/// Learns the sensor from the finished charts; `None` if no component has three landmarks.
+///
+/// Components that are too small to learn from get the sensor of the largest one: the unit of all charts is
+/// about the same.
+pub(crate) fn learn(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    components: &[Vec<u32>],
+    charts: &[&[Point]],
+    sets: &[SeenSets],
+    observer: &dyn Observer,
+) -> Result<Option<Sensing>, MapError> {
+    observer.started(Stage::Sensor, Some(components.len() as u64));
+    if observer.interrupted() {
+        return Err(MapError::Interrupted);
+    }
+    let n = graph.landmarks();
+    let mut sensors: Vec<SensorModel> = Vec::with_capacity(components.len());
+    let (mut detectability, mut deviation, mut occluded) = (vec![0.0; n], vec![0.0; n], Vec::new());
+    for ((members, &points), sets) in components.iter().zip(charts).zip(sets) {
+        if members.len() >= 3 {
+            let part;
+            let graph = if members.len() == n {
+                graph
+            } else {
+                part = graph.restricted_to(members);
+                &part
+            };
+            let found = observe(graph, sets, points, observer)?;
+            let sensor = SensorModel {
+                range: found.sensor.range,
+                edge: found.sensor.edge,
+                detectability: found.sensor.detectability,
+                outliers: found.outliers,
+                warp: warp::warp(counts, graph, members, points)?,
+            };
+            sensors.push(sensor);
+            for (place, &member) in members.iter().enumerate() {
+                detectability[member as usize] = found.detectability[place];
+                deviation[member as usize] = found.deviation[place];
+            }
+            occluded.extend(occlusion::pairs(counts, members, points, &sensor, &found.detectability));
+        } else if let Some(&sensor) = sensors.first() {
+            sensors.push(sensor);
+            for &member in members {
+                detectability[member as usize] = sensor.detectability;
+                deviation[member as usize] = sensor.range;
+            }
+        }
+        observer.advanced(1);
+    }
+    observer.finished(Stage::Sensor);
+    if sensors.is_empty() {
+        return Ok(None);
+    }
+    Sensing::from_parts(sensors, detectability, deviation, &occluded).map(Some)
+}
+
+#[cfg(test)]
+mod tests;

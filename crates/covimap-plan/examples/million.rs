@@ -1,0 +1,134 @@
+//! Measures loading and questions on a large map.
+//!
+//! ```text
+//! cargo run --release -p covimap-plan --example million -- hall 1000000
+//! ```
+//!
+//! makes up a map of that many landmarks, ten a square metre, saves and loads it in both forms, and asks
+//! for neighbours, turns and routes. `hall` is an open floor; `rooms` has walls every ten metres with a
+//! door of 1.5 m in each, which lines of sight pass through alone. Landmarks are numbered strip by strip, as a robot that
+//! sweeps the floor meets them. Times are of the processor, user and system, over all threads: they do not
+//! depend on what else runs.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use covimap_map::{
+    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, SightLines,
+    delaunay_edges,
+};
+use covimap_plan::{MapIndex, Objective, RoadParams, Roads};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+type Point = [f64; 2];
+
+const PER_SQUARE_METRE: f64 = 10.0;
+const RANGE: f64 = 1.2;
+const ROOM: f64 = 10.0;
+const DOOR: f64 = 1.5;
+const SIGHTINGS: u32 = 300;
+const STRIP: f64 = 2.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [kind, landmarks] = &arguments[..] else { return Err("usage: million hall|rooms LANDMARKS".into()) };
+    let map = make_up(landmarks.parse()?, kind == "rooms")?;
+    println!("{} landmarks, {} lines of sight", map.len(), map.sight_lines().count());
+    let folder = tempfile::tempdir()?;
+    for name in ["map.covimap", "map.json"] {
+        let path = folder.path().join(name);
+        map.save(&path)?;
+        let megabytes = path.metadata()?.len() as f64 / 1e6;
+        let loaded = timed(&format!("load {name}, {megabytes:.0} MB"), 1, || GlobalMap::load(&path))?;
+        assert_eq!(loaded, map);
+    }
+    let n = map.len() as u32;
+    let index = timed("index", 1, || MapIndex::new(Arc::new(map)));
+    timed("covariances", 1, || index.covariance(LandmarkId(0)))?;
+    timed("Delaunay graph", 1, || index.neighbours(LandmarkId(0)).map(<[_]>::len))?;
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let ids: Vec<LandmarkId> = (0..100_000).map(|_| LandmarkId(random.random_range(0..n))).collect();
+    timed("10 nearest", ids.len(), || ids.iter().try_for_each(|&id| index.nearest(id, 10).map(drop)))?;
+    let triples: Vec<_> = ids.windows(3).map(|t| [t[0], t[1], t[2]]).collect();
+    timed("orientation", triples.len(), || {
+        triples.iter().try_for_each(|&[a, b, c]| index.orientation(a, b, c).map(drop))
+    })?;
+    for objective in [Objective::Shortest, Objective::Safest] {
+        let mut params = RoadParams::default();
+        params.objective = objective;
+        let roads = timed("road map", 1, || Roads::new(&index, params))?;
+        let pairs = ids[..200].as_chunks::<2>().0;
+        let lengths = timed(&format!("{objective:?} route"), pairs.len(), || {
+            pairs
+                .iter()
+                .map(|&[a, b]| roads.route(a, b).map(|route| route.landmarks.len()))
+                .collect::<Result<Vec<_>, _>>()
+        })?;
+        println!("  over {} landmarks in the mean", lengths.iter().sum::<usize>() / lengths.len());
+    }
+    Ok(())
+}
+
+/// Landmarks at random, with lines of sight between neighbours in range that no wall parts.
+fn make_up(n: u32, walls: bool) -> Result<GlobalMap, Box<dyn Error>> {
+    let side = (f64::from(n) / PER_SQUARE_METRE).sqrt();
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut points: Vec<Point> =
+        (0..n).map(|_| [random.random_range(0.0..side), random.random_range(0.0..side)]).collect();
+    points.sort_by(|a, b| {
+        (a[1] / STRIP).floor().total_cmp(&(b[1] / STRIP).floor()).then(a[0].total_cmp(&b[0]))
+    });
+    let lines = delaunay_edges(&points)?.into_iter().filter_map(|(a, b)| {
+        let [p, q] = [a, b].map(|i| points[i as usize]);
+        let apart = (p[0] - q[0]).hypot(p[1] - q[1]);
+        let open = !walls || (passes(p, q, 0) && passes(p, q, 1));
+        let both = f64::from(SIGHTINGS) * (1.0 - apart / RANGE);
+        (open && both >= 1.0).then_some((LandmarkId(a), LandmarkId(b), both as u32))
+    });
+    let lines = SightLines::from_pairs(points.len(), lines)?;
+    let placed = |&position: &Point| PlacedLandmark {
+        position,
+        component: 0,
+        region: 0,
+        sightings: SIGHTINGS,
+        partners: 20,
+        ..Default::default()
+    };
+    let landmarks = points.iter().map(placed).collect();
+    let mut names = LandmarkNames::default();
+    for i in 0..n {
+        names.push(&format!("L{i:07}"));
+    }
+    let map = GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default())?;
+    Ok(map.with_sight_lines(lines)?)
+}
+
+/// Whether a line meets no wall across an axis, or goes through the door in its middle.
+fn passes(p: Point, q: Point, axis: usize) -> bool {
+    let [from, to] = [p, q].map(|point| (point[axis] / ROOM).floor());
+    if from == to {
+        return true;
+    }
+    let wall = ROOM * from.max(to);
+    let t = (wall - p[axis]) / (q[axis] - p[axis]);
+    let along = p[1 - axis] + t * (q[1 - axis] - p[1 - axis]);
+    (along.rem_euclid(ROOM) - 0.5 * ROOM).abs() < 0.5 * DOOR
+}
+
+fn timed<T>(what: &str, times: usize, run: impl FnOnce() -> T) -> T {
+    let start = processor_seconds();
+    let result = run();
+    let each = (processor_seconds() - start) / times as f64;
+    let (value, unit) = if each < 1e-3 { (each * 1e6, "us") } else { (each * 1e3, "ms") };
+    println!("{what:<28} {value:>10.2} {unit}");
+    result
+}
+
+/// User and system time of this process, to a hundredth of a second, as Linux tells it.
+fn processor_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = text.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(11).take(2).filter_map(|field| field.parse::<f64>().ok());
+    ticks.sum::<f64>() / 100.0
+}

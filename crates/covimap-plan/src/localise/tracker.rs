@@ -1,0 +1,215 @@
+//! A robot on the move: the places of one look after the other, joined by what it can have moved.
+//!
+//! The places are the cells of a grid over the charts, a fifth of a range wide. Before a look the belief `b` is
+//! spread out by a normal step, and a small share of it over the whole map, for a robot that was carried away
+//! or never was where it seemed; after it, it is weighed by the look (forward algorithm of a hidden Markov
+//! model):
+//!
+//! `b'(y) ~ L(y) ((1 - j) sum_z N(y - z; m^2) b(z) + j / area)`  (2)
+//!
+//! A look that fits two places leaves both in the belief; the looks that follow decide. What looks the same in
+//! two places is therefore no trouble as long as the ways there differ.
+//!
+//! # Complexity
+//! `O(c (k + m))` a look, `c` cells of the belief, `k` landmarks near and `m` cells that a step spans.
+
+use std::sync::Arc;
+
+use covimap_embed::Point;
+
+use super::modes::{COARSE, Cell, Patch, QUALITIES, modes};
+use super::sight::PLACES;
+use super::{Localiser, Location, Look, distance};
+use crate::PlanError;
+
+/// Cells below this share of the best one are dropped.
+const NEGLIGIBLE: f64 = 1e-7;
+/// Width of the tiles in which looks are judged, in cells: a tile and its corners lie within [`PLACES`]
+/// ranges of its middle.
+const TILE: i32 = 6;
+/// Steps longer than this many standard deviations are left to the jumps.
+const FARTHEST: f64 = 3.0;
+
+/// How a robot moves between two looks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TrackParams {
+    /// Standard deviation of each coordinate of a step, as a share of the visibility range, in `(0, 3]`.
+    /// Default 0.3.
+    pub step: f64,
+    /// Probability of being somewhere else altogether, in `(0, 1)`. Default 0.001.
+    pub jump: f64,
+}
+
+impl Default for TrackParams {
+    fn default() -> Self {
+        Self { step: 0.3, jump: 1e-3 }
+    }
+}
+
+/// A cell of a chart with the probability of being in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Belief {
+    component: u32,
+    at: [i32; 2],
+    mass: f64,
+}
+
+/// Follows a robot from look to look.
+#[derive(Debug, Clone)]
+pub struct Tracker {
+    localiser: Arc<Localiser>,
+    params: TrackParams,
+    /// By component and cell; sums to 1, or is empty before the first look.
+    belief: Vec<Belief>,
+}
+
+impl Tracker {
+    /// Knows nothing of where the robot is.
+    ///
+    /// # Errors
+    /// [`PlanError::BadParameter`] for one out of its range.
+    pub fn new(localiser: Arc<Localiser>, params: TrackParams) -> Result<Self, PlanError> {
+        let bad = |name, value, wanted| Err(PlanError::BadParameter { name, value, wanted });
+        if !(params.step > 0.0 && params.step <= 3.0) {
+            return bad("track.step", params.step, "more than 0 and at most 3 ranges");
+        }
+        if !(params.jump > 0.0 && params.jump < 1.0) {
+            return bad("track.jump", params.jump, "a probability between 0 and 1");
+        }
+        Ok(Self { localiser, params, belief: Vec::new() })
+    }
+
+    /// Takes in the next look and tells where the robot is, given this look and all before.
+    pub fn update(&mut self, look: &Look) -> Location {
+        let mut belief = self.spread();
+        self.add_jumps(&mut belief, look);
+        let logs = self.judge(&belief, look);
+        let best = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut evidence = 0.0;
+        for (cell, log) in belief.iter_mut().zip(&logs) {
+            cell.mass = (log - best).exp();
+            evidence += cell.mass;
+        }
+        belief.retain(|cell| cell.mass > NEGLIGIBLE);
+        let kept: f64 = belief.iter().map(|cell| cell.mass).sum();
+        for cell in &mut belief {
+            cell.mass /= kept;
+        }
+        self.belief = belief;
+        self.localiser.location(look, modes(&self.patches()), best + evidence.ln())
+    }
+
+    /// Forgets everything.
+    pub fn reset(&mut self) {
+        self.belief.clear();
+    }
+
+    fn side(&self, component: u32) -> f64 {
+        COARSE * self.localiser.sensing().sensor(component).range
+    }
+
+    /// The belief after a step, without the jumps: along x, then along y.
+    fn spread(&self) -> Vec<Belief> {
+        let deviation = self.params.step / COARSE;
+        let reach = (FARTHEST * deviation).ceil() as i32;
+        let weight = |k: i32| (-0.5 * (f64::from(k) / deviation).powi(2)).exp();
+        let total: f64 = (-reach..=reach).map(weight).sum();
+        let mut belief = self.belief.clone();
+        for axis in 0..2 {
+            let step = |cell: &Belief| {
+                let cell = *cell;
+                (-reach..=reach).map(move |k| {
+                    let mut moved = cell;
+                    moved.at[axis] += k;
+                    moved.mass *= weight(k) / total;
+                    moved
+                })
+            };
+            belief = merged(belief.iter().flat_map(step).collect());
+        }
+        for cell in &mut belief {
+            cell.mass *= 1.0 - self.params.jump;
+        }
+        belief
+    }
+
+    /// Adds the places that the look speaks for, wherever they are, with the probability of a jump there.
+    fn add_jumps(&self, belief: &mut Vec<Belief>, look: &Look) {
+        let jump = if belief.is_empty() { 1.0 } else { self.params.jump };
+        let mass = jump * COARSE * COARSE / self.localiser.area;
+        let mut landed: Vec<Belief> = Vec::new();
+        for (component, middle) in self.localiser.crowds(&look.candidates()) {
+            let side = self.side(component);
+            let half = (PLACES / COARSE).ceil() as i32;
+            let centre = middle.map(|c| (c / side).round() as i32);
+            for [dx, dy] in (-half..=half).flat_map(|x| (-half..=half).map(move |y| [x, y])) {
+                let at = [centre[0] + dx, centre[1] + dy];
+                if distance(at.map(|c| f64::from(c) * side), middle) <= PLACES * side / COARSE {
+                    landed.push(Belief { component, at, mass });
+                }
+            }
+        }
+        // Discs may overlap: a place is landed on once.
+        landed.sort_unstable_by_key(|cell| (cell.component, cell.at));
+        landed.dedup_by_key(|cell| (cell.component, cell.at));
+        belief.extend(landed);
+        *belief = merged(std::mem::take(belief));
+    }
+
+    /// `ln (L(y) b(y))` of every cell, for looks of the quality that explains this one best.
+    fn judge(&self, belief: &[Belief], look: &Look) -> Vec<f64> {
+        let tile = |cell: &Belief| (cell.component, cell.at.map(|c| c.div_euclid(TILE)));
+        let mut order: Vec<usize> = (0..belief.len()).collect();
+        order.sort_by_key(|&k| tile(&belief[k]));
+        let mut logs = QUALITIES.map(|_| vec![f64::NEG_INFINITY; belief.len()]);
+        for cells in order.chunk_by(|&a, &b| tile(&belief[a]) == tile(&belief[b])) {
+            let (component, [column, row]) = tile(&belief[cells[0]]);
+            let side = self.side(component);
+            let centre = [column, row].map(|c| (f64::from(c * TILE) + f64::from(TILE - 1) / 2.0) * side);
+            let sight = self.localiser.sight(look, component, centre);
+            for &k in cells {
+                let place: Point = belief[k].at.map(|c| f64::from(c) * side);
+                for (logs, (quality, prior)) in logs.iter_mut().zip(QUALITIES) {
+                    let log = sight.log_likelihood(place, quality, side / 4.0);
+                    logs[k] = log + belief[k].mass.ln() + f64::ln(prior);
+                }
+            }
+        }
+        let best = |logs: &Vec<f64>| super::modes::log_sum(logs);
+        logs.into_iter()
+            .reduce(|a, b| if best(&b) > best(&a) { b } else { a })
+            .expect("four (bug in covimap)")
+    }
+
+    /// The belief as patches, one a component.
+    fn patches(&self) -> Vec<Patch> {
+        let patch = |cells: &[Belief]| {
+            let component = cells[0].component;
+            let cells = cells.iter().map(|cell| Cell { at: cell.at, log: cell.mass.ln() }).collect();
+            Patch::of_cells(
+                self.localiser.sensing().sensor(component),
+                component,
+                self.side(component),
+                cells,
+            )
+        };
+        self.belief.chunk_by(|a, b| a.component == b.component).map(patch).collect()
+    }
+}
+
+/// The cells in order, equal ones added up.
+fn merged(mut cells: Vec<Belief>) -> Vec<Belief> {
+    cells.sort_by_key(|cell| (cell.component, cell.at));
+    let mut sum: Vec<Belief> = Vec::with_capacity(cells.len());
+    for cell in cells {
+        match sum.last_mut() {
+            Some(last) if (last.component, last.at) == (cell.component, cell.at) => last.mass += cell.mass,
+            _ => sum.push(cell),
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests;
