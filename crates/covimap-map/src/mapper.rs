@@ -4,7 +4,7 @@ use covimap_embed::{PairDistances, Point, stress1};
 
 use crate::classical;
 use crate::component::{ComponentMap, Evidence, map_component, put_in_frame};
-use crate::distances::{ComponentSteps, Places};
+use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::{
@@ -63,8 +63,8 @@ impl Mapper {
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
         let sets = SeenSets::by_component(log, components);
-        let places = Places::new(graph.landmarks(), components);
-        let steps = ComponentSteps::of_all(log, &places, components.len());
+        let membership = Membership::new(graph.landmarks(), components);
+        let steps = ComponentSteps::of_all(log, &membership, components.len());
         let map = |((members, sets), steps): ((&Vec<u32>, SeenSets), ComponentSteps)| {
             let evidence = Evidence { counts, members, steps: &steps, sets: &sets };
             let MapperParams { auto, seed, .. } = &self.params;
