@@ -5,7 +5,7 @@ use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 use crate::aliases;
 use crate::classical;
 use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
-use crate::distances::{ComponentSteps, Places};
+use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::sensing;
@@ -137,8 +137,8 @@ impl Mapper {
     ) -> Result<Vec<ComponentMap>, MapError> {
         let Known { log, counts, graph, components, sets } = *known;
         let MapperParams { auto, seed, .. } = &self.params;
-        let places = Places::new(graph.landmarks(), components);
-        let steps = ComponentSteps::of_all(log, &places, components.len());
+        let membership = Membership::new(graph.landmarks(), components);
+        let steps = ComponentSteps::of_all(log, &membership, components.len());
         let map_one = |graph: &LinkGraph, evidence: &Evidence| match start {
             None => map_component(graph, evidence, auto, *seed, observer),
             Some(all) => {

@@ -47,7 +47,7 @@ pub use choice::FamilyScore;
 use choice::choose;
 use counts::{PairCount, Sample};
 pub use shepard::ShepardRow;
-pub(crate) use steps::{ComponentSteps, Places};
+pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
 
 /// Rounds of fitting and polishing: more move the map by less than the noise of the counts.

@@ -3,19 +3,19 @@
 use crate::SightingLog;
 
 /// Component and place in it of every landmark of a log.
-pub(crate) struct Places {
+pub(crate) struct Membership {
     of: Vec<(u32, u32)>,
 }
 
 /// The steps of one component, in the order of time.
 pub(crate) struct ComponentSteps<'a> {
     log: &'a SightingLog,
-    places: &'a Places,
+    membership: &'a Membership,
     component: u32,
     steps: Vec<usize>,
 }
 
-impl Places {
+impl Membership {
     /// `components[c]` are the landmarks of component `c`, each landmark of the log in one of them.
     pub fn new(landmarks: usize, components: &[Vec<u32>]) -> Self {
         let mut of = vec![(0, 0); landmarks];
@@ -30,14 +30,14 @@ impl Places {
 
 impl<'a> ComponentSteps<'a> {
     /// The steps of each of so many components: those whose first landmark belongs to it.
-    pub fn of_all(log: &'a SightingLog, places: &'a Places, components: usize) -> Vec<Self> {
+    pub fn of_all(log: &'a SightingLog, membership: &'a Membership, components: usize) -> Vec<Self> {
         let mut steps = vec![Vec::new(); components];
         for (step, seen) in log.iter().enumerate() {
             if let Some(&first) = seen.first() {
-                steps[places.of[first as usize].0 as usize].push(step);
+                steps[membership.of[first as usize].0 as usize].push(step);
             }
         }
-        let of_one = |(component, steps)| Self { log, places, component, steps };
+        let of_one = |(component, steps)| Self { log, membership, component, steps };
         (0..).zip(steps).map(of_one).collect()
     }
 
@@ -49,7 +49,7 @@ impl<'a> ComponentSteps<'a> {
     /// The landmarks of the component that a step shows, by their places in it, ascending.
     pub fn read(&self, step: usize, seen: &mut Vec<u32>) {
         let own = |&landmark: &u32| {
-            let (component, place) = self.places.of[landmark as usize];
+            let (component, place) = self.membership.of[landmark as usize];
             (component == self.component).then_some(place)
         };
         seen.clear();

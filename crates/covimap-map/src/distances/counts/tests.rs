@@ -1,5 +1,5 @@
 use super::*;
-use crate::distances::Places;
+use crate::distances::Membership;
 use crate::fixtures::{counts_of, log_of, looks, scattered};
 use crate::{LinkGraph, SightingLog};
 
@@ -13,8 +13,8 @@ fn hall(times: usize) -> SightingLog {
 fn drawn(log: &SightingLog) -> (LinkGraph, Sample) {
     let graph = LinkGraph::from_counts(&counts_of(log));
     let members = vec![(0..graph.landmarks() as u32).collect()];
-    let places = Places::new(graph.landmarks(), &members);
-    let steps = ComponentSteps::of_all(log, &places, 1).pop().unwrap();
+    let membership = Membership::new(graph.landmarks(), &members);
+    let steps = ComponentSteps::of_all(log, &membership, 1).pop().unwrap();
     let sample = Sample::draw(&graph, &steps, 0);
     (graph, sample)
 }
