@@ -40,7 +40,9 @@ pub(crate) fn map_seen(placed: &[(Point, u32)], lines: &[(u32, u32, u32)], sight
         component,
         region: component,
         sightings,
-        partners: partners(i) as u32, ..Default::default() };
+        partners: partners(i) as u32,
+        ..Default::default()
+    };
     let landmarks = placed.iter().enumerate().map(landmark).collect();
     let lines = lines.iter().map(|&(a, b, steps)| (LandmarkId(a), LandmarkId(b), steps));
     GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default())

@@ -16,7 +16,9 @@ pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u3
         component,
         region: component,
         sightings: 300,
-        partners: 10, ..Default::default() };
+        partners: 10,
+        ..Default::default()
+    };
     // Eight landmarks a look.
     let report = BuildReport { steps: 1000, sightings: 8000, ..BuildReport::default() };
     let sensors = landmarks.iter().map(|placed| placed.0 as usize + 1).max().unwrap_or(1);
