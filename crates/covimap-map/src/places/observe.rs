@@ -3,7 +3,6 @@
 
 use covimap_embed::Point;
 
-use super::grid::CELLS;
 use super::posterior::{Neighbours, Posterior, Step, Witness, Workspace};
 use super::sensor::{FALSE_SIGHTING, Sensor};
 use super::{Model, SENSOR_SETS, SENSOR_STEPS, SeenSets, fit_sensor, landmark_scores, sensor_scores};
@@ -72,10 +71,10 @@ fn truly(posterior: &Posterior, step: &Step, witness: &Witness) -> f32 {
     let mut truly = 0.0;
     for row in step.rows.clone() {
         let visibility = posterior.sight().visibility(witness.cutting, row);
-        for k in 0..CELLS {
-            let by_sight = (witness.detectability - FALSE_SIGHTING) * visibility[k];
-            let falsely = FALSE_SIGHTING * (1.0 - visibility[k]) / (FALSE_SIGHTING + by_sight);
-            truly += step.places[row][k] * (1.0 - falsely);
+        for (v, weight) in visibility.iter().zip(&step.places[row]) {
+            let by_sight = (witness.detectability - FALSE_SIGHTING) * v;
+            let falsely = FALSE_SIGHTING * (1.0 - v) / (FALSE_SIGHTING + by_sight);
+            truly += weight * (1.0 - falsely);
         }
     }
     truly

@@ -5,7 +5,7 @@ mod warnings;
 
 use serde::{Deserialize, Serialize};
 
-pub(crate) use warnings::warnings;
+pub(crate) use warnings::{aliases_warning, warnings};
 
 /// A finding that a reader of the map should know of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
