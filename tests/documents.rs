@@ -70,7 +70,10 @@ fn the_test_command_of_the_readme_is_the_one_that_is_run() {
 
 #[test]
 fn links_between_documents_lead_somewhere() {
-    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let docs = ["docs", "docs/maths", "docs/decisions"]
+        .into_iter()
+        .flat_map(|folder| fs::read_dir(root().join(folder)).unwrap())
+        .map(|entry| entry.unwrap().path());
     let documents = docs
         .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
         .chain(["README.md", "CHANGELOG.md", "crates/covimap-cli/data/README.md"].map(PathBuf::from));

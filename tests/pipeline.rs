@@ -164,6 +164,7 @@ fn a_build_can_be_stopped_in_every_stage() {
         Stage::LocalMaps,
         Stage::Stitch,
         Stage::Polish,
+        Stage::Distances,
         Stage::Refine,
     ];
     let stages = auto.map(|stage| (Method::Auto, stage));

@@ -3,7 +3,7 @@
 //! | code | meaning |
 //! |---|---|
 //! | 0 | done |
-//! | 1 | failure: an output cannot be written, the system refused something |
+//! | 1 | failure: an output cannot be written, the system refused something, a build would exceed `--max-memory` |
 //! | 2 | usage: unknown or contradicting options |
 //! | 3 | bad input: a file is missing, unreadable or does not say what its format asks |
 //! | 130 | interrupted |
@@ -100,7 +100,8 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::NoInformation { .. }
             | MapError::TooLargeForClassical { .. }
             | MapError::NoCommonLandmarks { .. }
-            | MapError::TooFewCommon { .. },
+            | MapError::TooFewCommon { .. }
+            | MapError::OtherLog { .. },
         ) => BAD_INPUT,
         Some(MapError::BadParameter { .. }) => USAGE,
         _ => FAILURE,

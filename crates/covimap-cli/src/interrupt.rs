@@ -2,6 +2,8 @@
 
 use std::process;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
+use std::thread;
+use std::time::Duration;
 
 use anyhow::Context;
 
@@ -10,8 +12,16 @@ use crate::exit;
 
 /// Whether somebody asked to stop.
 static REQUESTED: AtomicBool = AtomicBool::new(false);
-/// How many [`Deferral`]s are alive.
-static DEFERRED: AtomicUsize = AtomicUsize::new(0);
+/// Pieces of work that end by themselves when [`requested`].
+static WORKING: AtomicUsize = AtomicUsize::new(0);
+/// Files that are being written.
+static WRITING: AtomicUsize = AtomicUsize::new(0);
+
+/// Longest wait for work to end by itself: one factorisation of a large matrix takes longer, and reading may
+/// wait for ever.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Between two looks at whether files are being written.
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// Listens for Ctrl-C and for requests to terminate from now on.
 ///
@@ -19,13 +29,25 @@ static DEFERRED: AtomicUsize = AtomicUsize::new(0);
 /// When the system refuses a signal handler.
 pub fn listen() -> anyhow::Result<()> {
     ctrlc::set_handler(|| {
-        if REQUESTED.swap(true, SeqCst) || DEFERRED.load(SeqCst) == 0 {
-            complain("covimap: interrupted");
-            process::exit(exit::INTERRUPTED.into());
+        if REQUESTED.swap(true, SeqCst) || (WORKING.load(SeqCst) == 0 && WRITING.load(SeqCst) == 0) {
+            end();
         }
         complain("covimap: stopping; once more stops at once");
+        // In a thread of its own, so that the next Ctrl-C is heard.
+        thread::spawn(|| {
+            thread::sleep(PATIENCE);
+            while WRITING.load(SeqCst) > 0 {
+                thread::sleep(LOOK_EVERY);
+            }
+            end();
+        });
     })
     .context("cannot listen for Ctrl-C")
+}
+
+fn end() -> ! {
+    complain("covimap: interrupted");
+    process::exit(exit::INTERRUPTED.into())
 }
 
 /// Whether Ctrl-C was pressed; work that asks this ends by itself.
@@ -33,19 +55,30 @@ pub fn requested() -> bool {
     REQUESTED.load(SeqCst)
 }
 
-/// While it lives, the first Ctrl-C only sets [`requested`]; a second one still ends the program.
+/// While it lives, the first Ctrl-C sets [`requested`] and leaves the work some time to end; a second one still
+/// ends the program.
 #[derive(Debug)]
-pub struct Deferral(());
+pub struct Deferral(&'static AtomicUsize);
 
 impl Deferral {
-    pub fn new() -> Self {
-        DEFERRED.fetch_add(1, SeqCst);
-        Self(())
+    /// For work that looks at [`requested`] now and then: it has [`PATIENCE`] to end.
+    pub fn of_work() -> Self {
+        Self::counted_in(&WORKING)
+    }
+
+    /// For writing a file: it is brought to its end.
+    pub fn of_writing() -> Self {
+        Self::counted_in(&WRITING)
+    }
+
+    fn counted_in(count: &'static AtomicUsize) -> Self {
+        count.fetch_add(1, SeqCst);
+        Self(count)
     }
 }
 
 impl Drop for Deferral {
     fn drop(&mut self) {
-        DEFERRED.fetch_sub(1, SeqCst);
+        self.0.fetch_sub(1, SeqCst);
     }
 }

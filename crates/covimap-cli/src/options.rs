@@ -19,13 +19,26 @@ pub struct LogArgs {
     /// Logs of sightings, read as one log in this order; `-` is stdin, .gz and .zst are unpacked
     #[arg(required = true, value_name = "LOG")]
     pub logs: Vec<PathBuf>,
+    #[command(flatten)]
+    format: FormatArg,
+}
+
+impl LogArgs {
+    pub fn format(&self) -> Option<LogFormat> {
+        self.format.get()
+    }
+}
+
+/// What logs are written in.
+#[derive(Debug, clap::Args)]
+pub struct FormatArg {
     /// Format of the logs, when their names do not tell
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatName>,
 }
 
-impl LogArgs {
-    pub fn format(&self) -> Option<LogFormat> {
+impl FormatArg {
+    pub fn get(&self) -> Option<LogFormat> {
         self.format.map(LogFormat::from)
     }
 }
@@ -80,6 +93,25 @@ fn threads(text: &str) -> Result<usize, String> {
     }
 }
 
+/// A number of bytes, with k, M or G for the powers of 1000: `800M`, `1.5G`.
+///
+/// # Errors
+/// What is not such a number.
+pub fn size(text: &str) -> Result<u64, String> {
+    let unit = |letter: char| match letter {
+        'k' | 'K' => Some(1e3),
+        'M' => Some(1e6),
+        'G' => Some(1e9),
+        _ => None,
+    };
+    let factor = text.chars().last().and_then(unit);
+    let digits = if factor.is_some() { &text[..text.len() - 1] } else { text };
+    match digits.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok((number * factor.unwrap_or(1.0)) as u64),
+        _ => Err("give bytes, or a number with k, M or G such as 800M or 1.5G".to_owned()),
+    }
+}
+
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FormatName {
     /// A JSON object a step: {"t": 12.5, "seen": ["A", "B"]}
@@ -103,4 +135,19 @@ impl From<FormatName> for LogFormat {
 /// Options that make no sense together; exit code 2.
 pub fn conflict(what: impl std::fmt::Display) -> anyhow::Error {
     Cli::command().error(ErrorKind::ArgumentConflict, what).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_a_unit_or_are_bytes() {
+        let sizes = ["1", "1500", "64k", "64K", "800M", "1.5G"];
+        let wanted = [1, 1500, 64_000, 64_000, 800_000_000, 1_500_000_000];
+        assert_eq!(sizes.map(|text| size(text).unwrap()), wanted);
+        for wrong in ["", "M", "0", "-1G", "4 G", "4T", "4Ä", "inf", "NaNG"] {
+            assert!(size(wrong).unwrap_err().starts_with("give bytes"), "{wrong}");
+        }
+    }
 }

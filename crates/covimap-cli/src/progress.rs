@@ -57,7 +57,7 @@ impl Progress {
                 Some(Ticker::start(PLAIN_EVERY, move || running().into_iter().for_each(say)))
             }
         };
-        Self { state, ticker, _deferral: Deferral::new() }
+        Self { state, ticker, _deferral: Deferral::of_work() }
     }
 
     /// A piece of work starts; `total` is its amount, where known. [`Observer::advanced`] tells how it goes on.
@@ -173,12 +173,22 @@ fn style(unit: &str, total: Option<u64>) -> ProgressStyle {
 /// What is going on, as a line of text.
 fn line(running: &Running) -> String {
     let &Running { name, unit, total, done, since } = running;
-    let seconds = since.elapsed().as_secs();
+    let elapsed = since.elapsed();
+    let seconds = elapsed.as_secs();
     match total {
-        Some(total) => format!("covimap: {name}: {done} of {total} {unit}, {seconds} s"),
+        Some(total) => {
+            let left = remaining(elapsed, done, total)
+                .map_or(String::new(), |left| format!(", about {} s left", left.as_secs()));
+            format!("covimap: {name}: {done} of {total} {unit}, {seconds} s{left}")
+        }
         None if done > 0 => format!("covimap: {name}: {done} {unit}, {seconds} s"),
         None => format!("covimap: {name}: {seconds} s"),
     }
+}
+
+/// How long the rest will take if it goes on like this; unknown before anything is done.
+fn remaining(elapsed: Duration, done: u64, total: u64) -> Option<Duration> {
+    (done > 0).then(|| elapsed.mul_f64(total.saturating_sub(done) as f64 / done as f64))
 }
 
 /// What people call a stage.
@@ -190,6 +200,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
         Stage::Polish => "polish",
+        Stage::Distances => "distances",
         Stage::Refine => "refine",
         Stage::Classical => "classical",
         Stage::Sensor => "sensor",
@@ -206,7 +217,8 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Regions | Stage::LocalMaps => "regions",
         Stage::Refine => "iterations at most",
         Stage::Sensor => "components",
-        Stage::Stitch | Stage::Polish | Stage::Classical => "steps",
+        Stage::Polish => "steps at most",
+        Stage::Stitch | Stage::Distances | Stage::Classical => "steps",
     }
 }
 
@@ -228,9 +240,22 @@ mod tests {
 
     #[test]
     fn a_line_says_what_is_done_of_how_much() {
-        assert_eq!(line(&running(Some(900), 312)), "covimap: local maps: 312 of 900 regions, 0 s");
+        assert_eq!(
+            line(&running(Some(900), 312)),
+            "covimap: local maps: 312 of 900 regions, 0 s, about 0 s left"
+        );
+        assert_eq!(line(&running(Some(900), 0)), "covimap: local maps: 0 of 900 regions, 0 s");
         assert_eq!(line(&running(None, 312)), "covimap: local maps: 312 regions, 0 s");
         assert_eq!(line(&running(None, 0)), "covimap: local maps: 0 s");
+    }
+
+    #[test]
+    fn the_rest_goes_on_as_the_beginning_did() {
+        // 30 s for a quarter: three times that for the other three.
+        assert_eq!(remaining(Duration::from_secs(30), 2, 8), Some(Duration::from_secs(90)));
+        assert_eq!(remaining(Duration::from_secs(30), 0, 8), None);
+        // More was done than announced.
+        assert_eq!(remaining(Duration::from_secs(30), 9, 8), Some(Duration::ZERO));
     }
 
     #[test]

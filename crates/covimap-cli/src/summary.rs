@@ -2,12 +2,15 @@
 
 use std::fmt::Write;
 
-use covimap_map::{BuildReport, ComponentReport, Warning};
+use covimap_embed::DistanceCurve;
+use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, Warning};
 
 use crate::table;
 
 /// IDs shown with a warning.
 const EXAMPLES: usize = 10;
+/// One row of so many of the Shepard diagram is shown.
+const SHEPARD: usize = 4;
 /// Components shown, the largest ones.
 const COMPONENTS: usize = 10;
 
@@ -18,14 +21,72 @@ pub fn of(report: &BuildReport) -> String {
         counted(report.landmarks, "landmark"),
         counted(report.components.len() as u64, "component"),
         counted(report.regions, "region"),
-        counted(report.pairs, "pair"),
+        counted(report.pairs + report.honesty.set_aside, "pair"),
         counted(report.steps, "step"),
     );
     add(&mut text, format_args!("stress-1 {:.4} ({})", report.stress1, kruskal(report.stress1)));
+    if let Some(rate) = report.honesty.misrecognition {
+        let aside = counted(report.honesty.set_aside, "pair");
+        add(
+            &mut text,
+            format_args!("about {:.2} % of the sightings misread, {aside} set aside", 100.0 * rate),
+        );
+    }
     for warning in &report.warnings {
         add(&mut text, self::warning(warning));
     }
     text
+}
+
+/// The distance function, how it was chosen, and how distances in the map agree with it.
+pub fn distances(report: &DistanceReport) -> String {
+    let curve = match &report.curve {
+        DistanceCurve::Log(log) => format!("log, f = {:.3} exp(-(d / {:.3})^2)", log.nearest, log.length),
+        DistanceCurve::Power(power) => {
+            format!("power, f = {:.3} exp(-(d / {:.3})^{:.2})", power.nearest, power.length, power.exponent)
+        }
+        DistanceCurve::Inverse(inverse) => {
+            format!("inverse, 1/f = 1/{:.3} + (d / {:.3})^2", inverse.nearest, inverse.length)
+        }
+        DistanceCurve::Lens(lens) => {
+            format!(
+                "lens, range {:.3}, seen within it with probability {:.3}",
+                lens.range, lens.detectability
+            )
+        }
+        DistanceCurve::Spline(_) => "spline".to_owned(),
+        DistanceCurve::Isotonic(_) => "isotonic".to_owned(),
+    };
+    let mut text = format!("distance function: {curve}, ");
+    if report.learnt {
+        text += &format!("learnt from {}", counted(report.sample, "pair"));
+        let best = report.scores.iter().map(|score| score.held_out).fold(f64::NEG_INFINITY, f64::max);
+        let score = |score: &FamilyScore| format!("{} {:.1}", score.family.name(), score.held_out - best);
+        let scores: Vec<_> = report.scores.iter().map(score).collect();
+        add(&mut text, format_args!("  log-likelihood held out, below the best: {}", scores.join(", ")));
+        let (repetition, doubted) = (report.repetition, 100.0 * report.doubted);
+        add(&mut text, format_args!("  {repetition:.1} steps tell as much as one independent look"));
+        add(
+            &mut text,
+            format_args!(
+                "  {doubted:.1} % of the pairs look farther apart than they are, as if across walls"
+            ),
+        );
+    } else {
+        text += "not learnt";
+    }
+    add(&mut text, table::render(&shepard(report)));
+    text
+}
+
+/// A few rows of the Shepard diagram.
+fn shepard(report: &DistanceReport) -> Vec<Vec<String>> {
+    let header = table::row(["frequency", "expected", "map 10 %", "map 50 %", "map 90 %"]);
+    let rows = report.shepard.iter().step_by(SHEPARD).map(|row| {
+        let numbers = [row.frequency, row.expected, row.distances[0], row.distances[2], row.distances[4]];
+        numbers.iter().map(|number| format!("{number:.3}")).collect()
+    });
+    [header].into_iter().chain(rows).collect()
 }
 
 /// A row a component, the largest ones first.
@@ -84,6 +145,8 @@ fn add(text: &mut String, line: impl std::fmt::Display) {
 
 #[cfg(test)]
 mod tests {
+    use covimap_map::HonestyReport;
+
     use super::*;
 
     #[test]
@@ -103,6 +166,7 @@ mod tests {
             sightings: 99,
             landmarks: 25,
             pairs: 1,
+            honesty: HonestyReport { set_aside: 7, misrecognition: Some(0.0123) },
             regions: 2,
             stress1: 0.031,
             components: Vec::new(),
@@ -115,8 +179,9 @@ mod tests {
         };
         assert_eq!(
             of(&report),
-            "25 landmarks in 0 components and 2 regions, 1 pair seen together, from 40 steps\n\
+            "25 landmarks in 0 components and 2 regions, 8 pairs seen together, from 40 steps\n\
              stress-1 0.0310 (good)\n\
+             about 1.23 % of the sightings misread, 7 pairs set aside\n\
              warning: seen_once (20): seen in a single step; log them more often\n  \
              L1, L2, L3, L4, L5, L6, L7, L8, L9, L10, ..."
         );
@@ -131,6 +196,7 @@ mod tests {
             stress1: 0.0,
             iterations: 3,
             converged: false,
+            distances: None,
         };
         let text = components(&vec![one; 12]);
         assert_eq!(text.lines().count(), 12);

@@ -124,8 +124,8 @@ pub enum EmbedError {
         /// Length of the second list.
         second: usize,
     },
-    /// A spline was asked over a range without extent.
-    #[error("{values} values without two different ones span no range for a spline; give more values")]
+    /// A curve was asked over a range without extent.
+    #[error("{values} values without two different ones span no range for a curve; give more values")]
     NoRange {
         /// Number of values.
         values: usize,

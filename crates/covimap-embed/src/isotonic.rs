@@ -138,6 +138,11 @@ impl DissimilarityOrder {
             return Err(EmbedError::Lengths { first: self.ascending.len(), second: distances.len() });
         }
         check_observations(distances, weights)?;
+        Ok(self.nearest(distances, weights, ties))
+    }
+
+    /// The disparities of checked distances, one a dissimilarity.
+    pub(crate) fn nearest(&self, distances: &[f64], weights: &[f64], ties: Ties) -> Vec<f64> {
         let mut disparities = vec![0.0; distances.len()];
         match ties {
             Ties::Primary => self.untied(distances, weights, &mut disparities),
@@ -146,7 +151,7 @@ impl DissimilarityOrder {
                 self.by_runs(distances, weights, keep, &mut disparities);
             }
         }
-        Ok(disparities)
+        disparities
     }
 
     fn untied(&self, distances: &[f64], weights: &[f64], disparities: &mut [f64]) {

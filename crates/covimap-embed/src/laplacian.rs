@@ -6,16 +6,23 @@
 //! whose columns sum to zero in every component, which is all that majorisation asks for, the
 //! tied solution solves the singular system exactly: summing the equations of a component leaves
 //! `c x_tied = 0`.
+//!
+//! A complete list with equal weights `w` needs no factor: `V = w (n I - 11')`, so that the
+//! centred solution is `Y / (w n)`.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-use crate::{EmbedError, Point};
+use crate::{EmbedError, PairDistances, Point};
+
+mod substitution;
 
 /// A symmetric positive definite sparse matrix with its Cholesky factor.
 ///
@@ -61,13 +68,23 @@ impl Factored {
     /// Factors `A = L L'` after an approximate minimum-degree ordering, and checks the factor on
     /// a known solution.
     pub fn new(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+        Self::with_runs(matrix, SupernodalThreshold::AUTO)
+    }
+
+    /// As [`Factored::new`], in the form that [`Factored::solve_points`] takes.
+    fn for_points(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+        // Any number of operations is above the threshold, zero too.
+        Self::with_runs(matrix, SupernodalThreshold(-1.0))
+    }
+
+    fn with_runs(matrix: &LowerTriangle, runs: SupernodalThreshold) -> Result<Self, EmbedError> {
         let n = matrix.order();
         let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
         let symbolic = factorize_symbolic_cholesky(
             structure,
             Side::Lower,
             SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: runs, ..Default::default() },
         )
         .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: n })?;
         let factored = Self::numeric(symbolic, matrix)?;
@@ -134,37 +151,86 @@ impl Factored {
             MemStack::new(&mut memory),
         );
     }
+
+    /// The solution for a right-hand side of a point a row.
+    fn solve_points(&self, y: &[Point]) -> Vec<Point> {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
+            // A matrix of order 0.
+            return y.to_vec();
+        };
+        let order = self.symbolic.perm().map(|order| order.arrays().0);
+        let object = |row: usize| order.map_or(row, |order| order[row]);
+        let mut rows: Vec<Point> = (0..y.len()).map(|row| y[object(row)]).collect();
+        substitution::substitute(symbolic, &self.values, &mut rows);
+        let mut solution = vec![[0.0; 2]; y.len()];
+        rows.into_iter().enumerate().for_each(|(row, point)| solution[object(row)] = point);
+        solution
+    }
 }
 
-/// `V` of a weighted pair list, factored, with the components that it falls into.
+/// `V` of a weighted pair list, ready for solves, with the components that it falls into.
 pub(crate) struct Laplacian {
-    factored: Factored,
+    inverse: Inverse,
     /// Component of each object.
     component: Vec<u32>,
     /// Number of objects in each component.
     sizes: Vec<u32>,
 }
 
+/// How `V` is inverted on right-hand sides that sum to zero in every component.
+enum Inverse {
+    /// By this factor: all pairs weigh the same.
+    Factor(f64),
+    /// By the factor of the tied Laplacian.
+    Factored(Box<Factored>),
+}
+
 impl Laplacian {
+    /// The Laplacian of a pair list: in closed form where it exists, factored otherwise.
+    pub fn of(pairs: &PairDistances) -> Result<Self, EmbedError> {
+        let n = pairs.objects();
+        if let Some(weight) = pairs.complete_weight() {
+            let factor = 1.0 / (n as f64 * weight);
+            return Ok(Self {
+                inverse: Inverse::Factor(factor),
+                component: vec![0; n],
+                sizes: vec![n as u32],
+            });
+        }
+        let edges: Vec<_> = pairs.pairs().iter().map(|pair| (pair.i, pair.j, pair.weight)).collect();
+        Self::new(n, &edges)
+    }
+
     /// Factors the Laplacian of `n` objects and weighted edges `(i, j, w)`, `i < j`, ascending.
     pub fn new(n: usize, edges: &[(u32, u32, f64)]) -> Result<Self, EmbedError> {
         let (component, sizes) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
-        let factored = Factored::new(&tied_laplacian(n, edges, &component))?;
-        Ok(Self { factored, component, sizes })
+        let factored = Factored::for_points(&tied_laplacian(n, edges, &component))?;
+        Ok(Self { inverse: Inverse::Factored(Box::new(factored)), component, sizes })
+    }
+
+    /// Component of each object, numbered by its first object.
+    pub fn component(&self) -> &[u32] {
+        &self.component
+    }
+
+    /// Number of components.
+    pub fn components(&self) -> usize {
+        self.sizes.len()
     }
 
     /// Solves `V X = Y` for a `Y` that sums to zero in every component; the solution is centred
     /// at the origin in every component.
     pub fn solve(&self, y: &[Point]) -> Vec<Point> {
-        let n = y.len();
-        let mut columns: Vec<f64> = (0..2).flat_map(|axis| y.iter().map(move |point| point[axis])).collect();
-        self.factored.solve(&mut columns, 2);
-        let mut solution: Vec<Point> = (0..n).map(|i| [columns[i], columns[n + i]]).collect();
+        let mut solution = match &self.inverse {
+            Inverse::Factor(factor) => y.iter().map(|point| point.map(|value| factor * value)).collect(),
+            Inverse::Factored(factored) => factored.solve_points(y),
+        };
         self.centre(&mut solution);
         solution
     }
 
-    fn centre(&self, points: &mut [Point]) {
+    /// Moves every component to the origin.
+    pub fn centre(&self, points: &mut [Point]) {
         let mut centres = vec![[0.0; 2]; self.sizes.len()];
         for (point, &component) in points.iter().zip(&self.component) {
             let centre = &mut centres[component as usize];

@@ -6,28 +6,40 @@
 
 mod classical;
 mod closure;
+mod disparity;
+mod distance_function;
 mod distance_rows;
 mod distances;
 mod eigen;
 mod error;
 mod fastmap;
 mod flexibility;
+mod forces;
 mod isotonic;
 mod laplacian;
+mod majorise;
 mod newton;
 mod nnls;
 mod pairs;
 mod pivot;
 mod procrustes;
+mod relocate;
+mod shepard;
 mod similarity;
 mod smacof;
 mod solve;
 mod spline;
 mod spring;
+mod starts;
 mod stress;
 mod synchronise;
 
 pub use classical::{ClassicalScaling, classical_scaling};
+pub use disparity::{PairBounds, Transformation};
+pub use distance_function::{
+    DistanceCurve, DistanceFamily, DistanceFunction, InverseSquare, Lens, Observation, StretchedExponential,
+    Tabulated,
+};
 pub use distance_rows::{DistanceRows, ShortestPaths};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
@@ -40,11 +52,13 @@ pub use pivot::{PivotDistances, landmark_scaling, pivot_scaling};
 pub use procrustes::{
     Correspondence, ProcrustesFit, ProcrustesOptions, Reflection, RobustFit, procrustes, robust_procrustes,
 };
+pub use shepard::ShepardPoint;
 pub use similarity::Similarity;
-pub use smacof::smacof;
+pub use smacof::{ComparedStarts, Scaling, Smacof, Steps, smacof};
 pub use solve::{Embedding, StopRule, Termination};
 pub use spline::{MonotoneSpline, MonotoneSplineBasis};
 pub use spring::spring_embedding;
+pub use starts::{random_starts, torgerson_start};
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
 

@@ -106,7 +106,7 @@ pub fn newton_while(
             model.expire();
         }
     };
-    Ok(Embedding::new(pairs, here.points, here.stress, iterations, termination))
+    Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
 }
 
 /// A configuration with its stress and the gradient of half of it.

@@ -57,6 +57,19 @@ impl PairDistances {
         self.n
     }
 
+    /// Whether every pair of objects is listed.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        // Ascending and none twice: their number tells.
+        self.pairs.len() == self.n * self.n.saturating_sub(1) / 2
+    }
+
+    /// The weight of all pairs, if every pair of two objects or more is listed with the same.
+    pub(crate) fn complete_weight(&self) -> Option<f64> {
+        let weight = self.pairs.first()?.weight;
+        (self.is_complete() && self.pairs.iter().all(|pair| pair.weight == weight)).then_some(weight)
+    }
+
     /// The pairs, ascending.
     #[must_use]
     pub fn pairs(&self) -> &[Pair] {

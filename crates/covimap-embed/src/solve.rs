@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::stress::stress1;
+use crate::stress::FitSums;
 use crate::{EmbedError, PairDistances, Point};
 
 /// When an iterative solver stops.
@@ -34,6 +34,9 @@ pub struct Embedding {
     pub points: Vec<Point>,
     /// Raw stress of `points`.
     pub stress: f64,
+    /// Raw stress over `sum w d^2`, in `[0, 1]` at a minimum. Its root is what R's smacof, isoMDS
+    /// and monoMDS call stress.
+    pub normalised_stress: f64,
     /// Stress-1 of `points`.
     pub stress1: f64,
     /// Steps taken.
@@ -43,15 +46,32 @@ pub struct Embedding {
 }
 
 impl Embedding {
+    /// With the stresses that `sums` of `points` make.
     pub(crate) fn new(
-        pairs: &PairDistances,
         points: Vec<Point>,
-        stress: f64,
+        sums: FitSums,
         iterations: usize,
         termination: Termination,
     ) -> Self {
-        let stress1 = stress1(pairs, &points);
-        Self { points, stress, stress1, iterations, termination }
+        Self {
+            points,
+            stress: sums.residual,
+            normalised_stress: sums.normalised(),
+            stress1: sums.stress1(),
+            iterations,
+            termination,
+        }
+    }
+
+    /// Against the listed distances.
+    pub(crate) fn of_distances(
+        pairs: &PairDistances,
+        points: Vec<Point>,
+        iterations: usize,
+        termination: Termination,
+    ) -> Self {
+        let sums = FitSums::new(pairs, |k| pairs.pairs()[k].distance, &points);
+        Self::new(points, sums, iterations, termination)
     }
 }
 

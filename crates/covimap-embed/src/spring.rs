@@ -69,7 +69,7 @@ pub fn spring_embedding(
             break;
         }
     }
-    Ok(Embedding::new(pairs, points, stress, iterations, termination))
+    Ok(Embedding::of_distances(pairs, points, iterations, termination))
 }
 
 /// Eq. (1) for all objects.

@@ -1,4 +1,4 @@
-//! Raw stress of a configuration and what the solvers need of it, pair by pair.
+//! How well a configuration fits: raw stress, normalised stress and stress-1.
 
 use rayon::prelude::*;
 
@@ -6,7 +6,7 @@ use crate::{PairDistances, Point};
 
 /// Pairs handled by one task, and the unit of the fixed-order sums: a partial sum covers the same
 /// pairs however many threads there are.
-const CHUNK: usize = 4096;
+pub(crate) const CHUNK: usize = 4096;
 
 /// `r_ij = |x_i - x_j|`.
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
@@ -19,14 +19,7 @@ pub(crate) fn distance(a: Point, b: Point) -> f64 {
 /// The sum is taken in a fixed order: the same bits for any number of threads.
 #[must_use]
 pub fn raw_stress(pairs: &PairDistances, points: &[Point]) -> f64 {
-    ordered_sum(
-        pairs,
-        |pair_distance, pair| {
-            let miss = pair_distance - pair.distance;
-            pair.weight * miss * miss
-        },
-        points,
-    )
+    FitSums::new(pairs, |k| pairs.pairs()[k].distance, points).residual
 }
 
 /// Kruskal's stress-1, `sqrt(sum w (|x_i - x_j| - d)^2 / sum w |x_i - x_j|^2)`, in `[0, 1]` at a minimum.
@@ -35,26 +28,49 @@ pub fn raw_stress(pairs: &PairDistances, points: &[Point]) -> f64 {
 /// excellent and perfect (Kruskal, Psychometrika 29, 1964).
 #[must_use]
 pub fn stress1(pairs: &PairDistances, points: &[Point]) -> f64 {
-    let size = ordered_sum(pairs, |pair_distance, pair| pair.weight * pair_distance * pair_distance, points);
-    if size > 0.0 { (raw_stress(pairs, points) / size).sqrt() } else { 0.0 }
+    FitSums::new(pairs, |k| pairs.pairs()[k].distance, points).stress1()
 }
 
-fn ordered_sum(
-    pairs: &PairDistances,
-    term: impl Fn(f64, &crate::Pair) -> f64 + Sync,
-    points: &[Point],
-) -> f64 {
-    let partial: Vec<f64> = pairs
-        .pairs()
-        .par_chunks(CHUNK)
-        .map(|chunk| {
-            chunk
-                .iter()
-                .map(|pair| term(distance(points[pair.i as usize], points[pair.j as usize]), pair))
-                .sum()
-        })
-        .collect();
-    partial.iter().sum()
+/// What every kind of stress is made of, with `r_ij = |x_i - x_j|` and one disparity `e_ij` a pair.
+#[derive(Clone, Copy)]
+pub(crate) struct FitSums {
+    /// `sum w (r - e)^2`, the raw stress.
+    pub residual: f64,
+    /// `sum w e^2`.
+    pub disparities: f64,
+    /// `sum w r^2`.
+    pub distances: f64,
+}
+
+impl FitSums {
+    /// The sums for the disparity that `disparity` gives each pair, by its place in the list.
+    pub fn new(pairs: &PairDistances, disparity: impl Fn(usize) -> f64 + Sync, points: &[Point]) -> Self {
+        let of_chunk = |(chunk, pairs): (usize, &[crate::Pair])| {
+            let mut sums = [0.0; 3];
+            for (k, pair) in pairs.iter().enumerate() {
+                let r = distance(points[pair.i as usize], points[pair.j as usize]);
+                let e = disparity(chunk * CHUNK + k);
+                let miss = r - e;
+                sums[0] += pair.weight * miss * miss;
+                sums[1] += pair.weight * e * e;
+                sums[2] += pair.weight * r * r;
+            }
+            sums
+        };
+        let partial: Vec<[f64; 3]> = pairs.pairs().par_chunks(CHUNK).enumerate().map(of_chunk).collect();
+        let [residual, disparities, distances] = [0, 1, 2].map(|k| partial.iter().map(|sums| sums[k]).sum());
+        Self { residual, disparities, distances }
+    }
+
+    /// `sum w (r - e)^2 / sum w e^2`; 0 if all disparities are zero.
+    pub fn normalised(self) -> f64 {
+        if self.disparities > 0.0 { self.residual / self.disparities } else { 0.0 }
+    }
+
+    /// `sqrt(sum w (r - e)^2 / sum w r^2)`; 0 if all objects coincide.
+    pub fn stress1(self) -> f64 {
+        if self.distances > 0.0 { (self.residual / self.distances).sqrt() } else { 0.0 }
+    }
 }
 
 /// The pairs of each object: `rows[starts[i]..starts[i + 1]]` are `(other object, pair)`, ascending.
@@ -87,27 +103,6 @@ impl Incidence {
     pub fn of(&self, object: usize) -> &[(u32, u32)] {
         &self.entries[self.starts[object]..self.starts[object + 1]]
     }
-}
-
-/// Fills `pull[k] = w d / r` for every pair (0 where the two objects coincide, so that the pair
-/// rests for this step) and returns the raw stress of `points`.
-pub(crate) fn pulls(pairs: &PairDistances, points: &[Point], pull: &mut [f64]) -> f64 {
-    let partial: Vec<f64> = pairs
-        .pairs()
-        .par_chunks(CHUNK)
-        .zip(pull.par_chunks_mut(CHUNK))
-        .map(|(pairs, pulls)| {
-            let mut stress = 0.0;
-            for (pair, pull) in pairs.iter().zip(pulls) {
-                let r = distance(points[pair.i as usize], points[pair.j as usize]);
-                let miss = r - pair.distance;
-                stress += pair.weight * miss * miss;
-                *pull = if r > 0.0 { pair.weight * pair.distance / r } else { 0.0 };
-            }
-            stress
-        })
-        .collect();
-    partial.iter().sum()
 }
 
 #[cfg(test)]

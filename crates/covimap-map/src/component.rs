@@ -3,8 +3,9 @@
 use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
 use rayon::prelude::*;
 
+use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
-use crate::{AutoParams, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
+use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RegionCover, Stage, local_map, stitch};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -16,24 +17,31 @@ pub(crate) struct ComponentMap {
     pub stress1: f64,
     pub iterations: usize,
     pub converged: bool,
+    pub distances: Option<DistanceReport>,
+}
+
+/// What is known of a connected component besides its links.
+pub(crate) struct Evidence<'a> {
+    pub counts: &'a CoVisibility,
+    /// What the counts call landmark `k` of the component, ascending.
+    pub members: &'a [u32],
+    pub steps: &'a ComponentSteps<'a>,
+    pub sets: &'a SeenSets,
 }
 
 /// Maps a connected component: regions, local maps, stitching, polish.
 pub(crate) fn map_component(
     graph: &LinkGraph,
-    sets: &SeenSets,
+    evidence: &Evidence,
     params: &AutoParams,
+    seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    let stage = |stage, total| {
-        observer.started(stage, total);
-        if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
-    };
-    stage(Stage::Regions, None)?;
+    begin(Stage::Regions, None, observer)?;
     let cover = RegionCover::new(graph, params.regions);
     observer.finished(Stage::Regions);
 
-    stage(Stage::LocalMaps, Some(cover.regions().len() as u64))?;
+    begin(Stage::LocalMaps, Some(cover.regions().len() as u64), observer)?;
     let maps = cover
         .regions()
         .par_iter()
@@ -48,34 +56,64 @@ pub(crate) fn map_component(
         .collect::<Result<Vec<_>, MapError>>()?;
     observer.finished(Stage::LocalMaps);
 
-    stage(Stage::Stitch, None)?;
+    begin(Stage::Stitch, None, observer)?;
     let start = stitch::stitch(graph, &cover, &maps)?;
     observer.finished(Stage::Stitch);
 
-    stage(Stage::Polish, Some(params.polish_stop.max_iterations as u64))?;
+    let settled = settle(graph, evidence, &start, params, seed, observer)?;
+    Ok(ComponentMap { region: cover.core_of().to_vec(), regions: cover.regions().len(), ..settled })
+}
+
+/// Polishes and refines a connected component from a start in map units; it counts as one region.
+pub(crate) fn settle(
+    graph: &LinkGraph,
+    evidence: &Evidence,
+    start: &[Point],
+    params: &AutoParams,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<ComponentMap, MapError> {
+    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = graph.to_pairs();
-    let polished = polish(&pairs, &start, params, observer)?;
+    let polished = polish(&pairs, start, params, observer)?;
     observer.finished(Stage::Polish);
 
+    begin(Stage::Distances, None, observer)?;
+    let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
+    let mut polished = Alternated::fixed(polished, pairs);
+    if let Some(distances) = &distances {
+        let polish = |pairs: &_, start: &_| polish(pairs, start, params, observer);
+        polished = distances.alternate(polished, params.distance, polish)?;
+    }
+    observer.finished(Stage::Distances);
+
+    let start = std::mem::take(&mut polished.embedding.points);
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        polished.points
+        start
     } else {
-        stage(Stage::Refine, Some(params.refine_iterations as u64))?;
-        let refined = refine(graph, sets, polished.points, params.refine_iterations, observer)?;
+        begin(Stage::Refine, Some(params.refine_iterations as u64), observer)?;
+        let refined = refine(graph, evidence.sets, start, params.refine_iterations, observer)?;
         observer.finished(Stage::Refine);
         refined.points
     };
     Ok(ComponentMap {
-        stress1: stress1(&pairs, &points),
-        iterations: polished.iterations,
-        converged: polished.termination == Termination::Converged,
+        stress1: stress1(&polished.pairs, &points),
+        iterations: polished.embedding.iterations,
+        converged: polished.embedding.termination == Termination::Converged,
+        distances: distances.map(|distances| distances.report(&polished, &points)),
+        region: vec![0; points.len()],
+        regions: 1,
         points,
-        region: cover.core_of().to_vec(),
-        regions: cover.regions().len(),
     })
 }
 
-/// Least stress over all links, from the stitched start.
+/// Tells the observer of a stage, unless it asks to stop.
+fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
+    observer.started(stage, total);
+    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+}
+
+/// Least stress over all links, from a start.
 fn polish(
     pairs: &PairDistances,
     start: &[Point],

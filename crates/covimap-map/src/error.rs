@@ -178,6 +178,34 @@ pub enum MapError {
         /// Fewest that a component needs.
         fewest: usize,
     },
+    /// A build is expected to take more memory than it may.
+    #[error(
+        "the build may take {} MB of memory, {} MB are allowed - {landmarks} landmarks, about {pairs} pairs; \
+         allow more or map parts of the log", needed.div_ceil(1_000_000), allowed / 1_000_000
+    )]
+    TooLittleMemory {
+        /// Bytes expected at the peak.
+        needed: u64,
+        /// Bytes allowed.
+        allowed: u64,
+        /// Landmarks of the log.
+        landmarks: u64,
+        /// Pairs seen together, estimated.
+        pairs: u64,
+    },
+    /// A log that a map was not made of.
+    #[error(
+        "the map was not made of this log: {id:?} is in one of the two only, the map has {map} landmarks and the \
+         log {log}; give the log that the map was made of"
+    )]
+    OtherLog {
+        /// A landmark that one of the two lacks.
+        id: String,
+        /// Landmarks of the map.
+        map: usize,
+        /// Landmarks of the log.
+        log: usize,
+    },
     /// A fit or an embedding that the numbers do not allow.
     #[error(transparent)]
     Embed(#[from] EmbedError),

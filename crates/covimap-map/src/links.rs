@@ -13,7 +13,7 @@ use covimap_embed::{Pair, PairDistances};
 use petgraph::graph::UnGraph;
 use rayon::prelude::*;
 
-use crate::{CoVisibility, LandmarkId};
+use crate::{CoVisibility, HonestLinks, LandmarkId};
 
 /// The paper's `alpha_2`; it sets the unit of the map.
 pub(crate) const ALPHA: f64 = 0.3;
@@ -40,6 +40,17 @@ impl LinkGraph {
     /// The link of every pair that was seen together.
     #[must_use]
     pub fn from_counts(counts: &CoVisibility) -> Self {
+        Self::from_counts_where(counts, |_, _| true)
+    }
+
+    /// The links that are kept.
+    #[must_use]
+    pub fn from_honest(counts: &CoVisibility, honest: &HonestLinks) -> Self {
+        Self::from_counts_where(counts, |landmark, place| honest.keeps(landmark, place))
+    }
+
+    /// The links of which `keep(i, place in the row of i)` is true; it must be symmetric.
+    fn from_counts_where(counts: &CoVisibility, keep: impl Fn(LandmarkId, usize) -> bool + Sync) -> Self {
         let rows: Vec<Vec<Link>> = (0..counts.landmarks() as u32)
             .into_par_iter()
             .map(|i| {
@@ -48,7 +59,9 @@ impl LinkGraph {
                 let link = |(&to, &both): (&u32, &u32)| {
                     link(to, f64::from(n_i), f64::from(counts.sightings()[to as usize]), f64::from(both))
                 };
-                partners.iter().zip(together).map(link).collect()
+                let kept = |&(place, _): &(usize, _)| keep(LandmarkId(i), place);
+                let pairs = partners.iter().zip(together);
+                pairs.enumerate().filter(kept).map(|(_, pair)| link(pair)).collect()
             })
             .collect();
         Self::from_rows(rows)

@@ -1,16 +1,18 @@
 //! The pipeline: a log in, a [`GlobalMap`] out.
 
-use covimap_embed::{PairDistances, Point, stress1};
+use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 
 use crate::aliases;
 use crate::classical;
-use crate::component::{ComponentMap, map_component, put_in_frame};
+use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
+use crate::distances::{ComponentSteps, Places};
 use crate::places::SeenSets;
 use crate::report::warnings;
 use crate::sensing;
 use crate::{
-    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, LandmarkId, LinkGraph, MapError,
-    MapperParams, Method, Observer, PlacedLandmark, SightLines, SightingLog, Stage,
+    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
+    LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SightLines, SightingLog,
+    Stage,
 };
 
 /// Builds maps with one set of checked parameters.
@@ -43,13 +45,42 @@ impl Mapper {
             Method::Classical => Vec::new(),
         };
         if aliases.is_empty() {
-            return self.build_counted(log, counts, observer);
+            return self.build_counted(log, counts, None, observer);
         }
         let split = aliases::split(log, &aliases);
         let counts = CoVisibility::count(&split, observer)?;
-        let mut map = self.build_counted(&split, counts, observer)?;
+        let mut map = self.build_counted(&split, counts, None, observer)?;
         map.report.warnings.insert(0, aliases::warning(log, &aliases));
         Ok(map)
+    }
+
+    /// Polishes and refines from given positions, without regions and local maps: what the same minimisation
+    /// makes of a start of one's own, such as surveyed positions.
+    ///
+    /// `start` has a position for every landmark of the log, each component in any frame and unit. The stages
+    /// are those of [`Method::Auto`], whatever the method of the parameters; every ID is taken for one landmark.
+    ///
+    /// # Errors
+    /// As [`Mapper::build`]; [`MapError::Embed`] for a start of another length or with all landmarks of a
+    /// component in one place, [`MapError::NotFinite`] for a
+    /// position that is nowhere.
+    pub fn build_from(
+        &self,
+        log: &SightingLog,
+        start: &[Point],
+        observer: &dyn Observer,
+    ) -> Result<GlobalMap, MapError> {
+        let wanted = log.names().len();
+        if start.len() != wanted {
+            let what = "one position for each landmark is needed";
+            return Err(EmbedError::BadStart { what, found: start.len(), wanted }.into());
+        }
+        if let Some(index) = start.iter().position(|point| !point.iter().all(|v| v.is_finite())) {
+            return Err(MapError::NotFinite { index, position: start[index] });
+        }
+        let params = MapperParams { method: Method::Auto, ..self.params.clone() };
+        let counts = CoVisibility::count(log, observer)?;
+        Self { params }.build_counted(log, counts, Some(start), observer)
     }
 
     /// Maps a log in which every ID is one landmark.
@@ -57,14 +88,22 @@ impl Mapper {
         &self,
         log: &SightingLog,
         counts: CoVisibility,
+        start: Option<&[Point]>,
         observer: &dyn Observer,
     ) -> Result<GlobalMap, MapError> {
         check_information(&counts)?;
-        let graph = LinkGraph::from_counts(&counts);
+        let (graph, honesty) = match self.params.method {
+            Method::Auto => honest_links(&counts),
+            Method::Classical => (LinkGraph::from_counts(&counts), HonestyReport::default()),
+        };
         let components = graph.components();
         let sets = SeenSets::by_component(log, &components);
         let maps: Vec<ComponentMap> = match self.params.method {
-            Method::Auto => self.auto_components(&sets, &graph, &components, observer)?,
+            Method::Auto => {
+                let known =
+                    Known { log, counts: &counts, graph: &graph, components: &components, sets: &sets };
+                self.auto_components(&known, start, observer)?
+            }
             Method::Classical => components
                 .iter()
                 .map(|members| {
@@ -74,7 +113,7 @@ impl Mapper {
         };
         let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
         let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
-        let report = report(&counts, &graph, &components, &maps, log);
+        let report = report(&counts, &graph, honesty, &components, &maps, log);
         let landmarks = place(&counts, &graph, &components, &maps);
         let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
         let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
@@ -87,22 +126,64 @@ impl Mapper {
 
     fn auto_components(
         &self,
-        sets: &[SeenSets],
-        graph: &LinkGraph,
-        components: &[Vec<u32>],
+        known: &Known,
+        start: Option<&[Point]>,
         observer: &dyn Observer,
     ) -> Result<Vec<ComponentMap>, MapError> {
-        let map = |(members, sets): (&Vec<u32>, &SeenSets)| {
+        let Known { log, counts, graph, components, sets } = *known;
+        let MapperParams { auto, seed, .. } = &self.params;
+        let places = Places::new(graph.landmarks(), components);
+        let steps = ComponentSteps::of_all(log, &places, components.len());
+        let map_one = |graph: &LinkGraph, evidence: &Evidence| match start {
+            None => map_component(graph, evidence, auto, *seed, observer),
+            Some(all) => {
+                let own: Vec<Point> = evidence.members.iter().map(|&member| all[member as usize]).collect();
+                settle(graph, evidence, &in_map_units(graph, own)?, auto, *seed, observer)
+            }
+        };
+        let map = |((members, sets), steps): ((&Vec<u32>, &SeenSets), ComponentSteps)| {
+            let evidence = Evidence { counts, members, steps: &steps, sets };
             let mut map = if members.len() == graph.landmarks() {
-                map_component(graph, sets, &self.params.auto, observer)?
+                map_one(graph, &evidence)?
             } else {
-                map_component(&graph.restricted_to(members), sets, &self.params.auto, observer)?
+                map_one(&graph.restricted_to(members), &evidence)?
             };
             put_in_frame(&mut map.points);
             Ok(map)
         };
-        components.iter().zip(sets).map(map).collect()
+        components.iter().zip(sets).zip(steps).map(map).collect()
     }
+}
+
+/// A log with what was counted of it.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    log: &'a SightingLog,
+    counts: &'a CoVisibility,
+    graph: &'a LinkGraph,
+    components: &'a [Vec<u32>],
+    sets: &'a [SeenSets],
+}
+
+/// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
+///
+/// # Errors
+/// [`EmbedError::CoincidingPoints`] where all links have length 0.
+fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Result<Vec<Point>, EmbedError> {
+    let (mut across, mut square) = (0.0, 0.0);
+    for (i, here) in points.iter().enumerate() {
+        for link in graph.of(i as u32) {
+            let there = points[link.to as usize];
+            let length = (there[0] - here[0]).hypot(there[1] - here[1]);
+            across += link.weight * link.distance * length;
+            square += link.weight * length * length;
+        }
+    }
+    if graph.link_count() > 0 && square <= 0.0 {
+        return Err(EmbedError::CoincidingPoints { pairs: graph.link_count() });
+    }
+    let scale = if square > 0.0 { across / square } else { 1.0 };
+    Ok(points.into_iter().map(|point| point.map(|coordinate| scale * coordinate)).collect())
 }
 
 fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
@@ -120,6 +201,11 @@ fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
         return Err(MapError::NoInformation { landmarks: n, steps: counts.sightings()[0] });
     }
     Ok(())
+}
+
+fn honest_links(counts: &CoVisibility) -> (LinkGraph, HonestyReport) {
+    let honest = HonestLinks::judge(counts);
+    (LinkGraph::from_honest(counts, &honest), honest.report())
 }
 
 fn classical_component(
@@ -144,6 +230,7 @@ fn classical_component(
         regions: 1,
         iterations: 0,
         converged: true,
+        distances: None,
     })
 }
 
@@ -188,6 +275,7 @@ fn place(
 fn report(
     counts: &CoVisibility,
     graph: &LinkGraph,
+    honesty: HonestyReport,
     components: &[Vec<u32>],
     maps: &[ComponentMap],
     log: &SightingLog,
@@ -202,6 +290,7 @@ fn report(
             stress1: map.stress1,
             iterations: map.iterations as u64,
             converged: map.converged,
+            distances: map.distances.clone(),
         })
         .collect();
     let pairs: u64 = components.iter().map(|component| component.pairs).sum();
@@ -213,7 +302,8 @@ fn report(
         pairs,
         regions: components.iter().map(|component| component.regions).sum(),
         stress1: (squares / pairs.max(1) as f64).sqrt(),
-        warnings: warnings(counts, graph, &components, log.names()),
+        honesty,
+        warnings: warnings(counts, graph, honesty, &components, log.names()),
         components,
     }
 }

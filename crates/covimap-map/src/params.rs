@@ -1,6 +1,6 @@
 //! Every setting of a build, with its default and the reason for it.
 
-use covimap_embed::StopRule;
+use covimap_embed::{DistanceFamily, StopRule};
 use serde::{Deserialize, Serialize};
 
 use crate::MapError;
@@ -89,6 +89,20 @@ impl StopParams {
     }
 }
 
+/// Which distance function turns frequencies into distances.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DistanceChoice {
+    /// The family that foretells held-out counts best, fitted to the log.
+    #[default]
+    Auto,
+    /// `sqrt(-0.3 ln f)`, the paper's logarithm, and no fit at all.
+    FixedLog,
+    /// This family, fitted to the log.
+    #[serde(untagged)]
+    Family(DistanceFamily),
+}
+
 /// Settings of `auto`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -100,6 +114,8 @@ pub struct AutoParams {
     pub local_stop: StopParams,
     /// When the polish is done. Default 40 steps or a gain of 1e-6.
     pub polish_stop: StopParams,
+    /// Distance function. Default `auto`.
+    pub distance: DistanceChoice,
     /// Most iterations of the refinement by the likelihood of the log. Default 4: more gain little,
     /// and the model of the sensor is never quite true; 0 leaves the configuration of least stress.
     pub refine_iterations: usize,
@@ -111,6 +127,7 @@ impl Default for AutoParams {
             regions: RegionParams::default(),
             local_stop: StopParams { max_iterations: 100, tolerance: 1e-5 },
             polish_stop: StopParams { max_iterations: 40, tolerance: 1e-6 },
+            distance: DistanceChoice::Auto,
             refine_iterations: 4,
         }
     }

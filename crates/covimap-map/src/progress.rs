@@ -15,6 +15,8 @@ pub enum Stage {
     Stitch,
     /// Least stress over all links; counted in steps.
     Polish,
+    /// Learning the distance function, and least stress again; counted in steps.
+    Distances,
     /// Moving landmarks to where the log is most likely; counted in iterations.
     Refine,
     /// The paper's dense scaling.

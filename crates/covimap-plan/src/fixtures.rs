@@ -24,6 +24,11 @@ pub(crate) fn cases(cases: u32) -> ProptestConfig {
 
 /// Landmarks `L0, L1, ...` with their components, and lines of sight between them.
 pub(crate) fn map_of(placed: &[(Point, u32)], lines: &[(u32, u32, u32)]) -> GlobalMap {
+    map_seen(placed, lines, SIGHTINGS)
+}
+
+/// The same with all landmarks seen in so many steps.
+pub(crate) fn map_seen(placed: &[(Point, u32)], lines: &[(u32, u32, u32)], sightings: u32) -> GlobalMap {
     let mut names = LandmarkNames::default();
     for number in 0..placed.len() {
         names.push(&format!("L{number}"));
@@ -34,7 +39,7 @@ pub(crate) fn map_of(placed: &[(Point, u32)], lines: &[(u32, u32, u32)]) -> Glob
         position,
         component,
         region: component,
-        sightings: SIGHTINGS,
+        sightings,
         partners: partners(i) as u32,
     };
     let landmarks = placed.iter().enumerate().map(landmark).collect();
@@ -57,11 +62,11 @@ pub(crate) fn scattered(n: usize, seed: u64) -> Vec<Point> {
     (0..n).map(|_| [random.random_range(0.0..1.0), random.random_range(0.0..1.0)]).collect()
 }
 
-/// The Delaunay edges of a share of 4 in 5, seen in 5 to 95 steps.
+/// Four in five of the Delaunay edges, seen in 20 to 99 steps.
 pub(crate) fn lines_among(points: &[Point], seed: u64) -> Vec<(u32, u32, u32)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let edges = delaunay_edges(points).unwrap().into_iter();
-    edges.filter_map(|(a, b)| random.random_bool(0.8).then(|| (a, b, random.random_range(5..96)))).collect()
+    edges.map(|(a, b)| (a, b, random.random_range(0..100))).filter(|line| line.2 >= 20).collect()
 }
 
 /// Two components: a unit square L0 to L3, counter-clockwise, and two landmarks L4, L5.

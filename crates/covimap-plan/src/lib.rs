@@ -8,6 +8,29 @@
 //!   walk over them.
 //! - [`align()`]: the map in the frame and unit of known positions, distances or turns.
 //! - [`explain`]: what holds a landmark in its place, and what would help.
+//! - [`Localiser`]: where a robot is that sees these landmarks.
+//!
+//! # Example
+//! ```
+//! use std::sync::Arc;
+//!
+//! use covimap_map::{LogFormat, Mapper, MapperParams, SightingLog, Silent};
+//! use covimap_plan::{MapIndex, RoadParams, Roads};
+//!
+//! // Four landmarks in a square; opposite corners are seldom seen together.
+//! let text = "A B\nB C\nC D\nD A\nA B\nB C\nC D\nD A\nA B C\n";
+//! let log = SightingLog::read_from(text.as_bytes(), "square", Some(LogFormat::Text), &Silent)?;
+//! let index = MapIndex::new(Arc::new(Mapper::new(MapperParams::default())?.build(&log, &Silent)?));
+//!
+//! let near = index.nearest("B", 2)?;
+//! assert!(near.iter().all(|near| ["A", "C"].contains(&index.name(near.landmark))));
+//! // B and D are on different sides of the line from A to C.
+//! assert_ne!(index.orientation("A", "C", "B")?.orientation, index.orientation("A", "C", "D")?.orientation);
+//! // B was never seen with D: the way leads over a third.
+//! let route = Roads::new(&index, RoadParams::default())?.route("B", "D")?;
+//! assert_eq!(route.landmarks.len(), 3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //! - [`Localiser`]: where a robot is that sees these landmarks; [`Tracker`]: the same on the move.
 
 mod align;

@@ -109,6 +109,8 @@ impl<'a> Roads<'a> {
                 (0..map.len() as u32).map(LandmarkId).map(rate).fold(f64::INFINITY, f64::min)
             }
         };
+        // Without a road that has a length, nothing is known of the cost of one.
+        let least_rate = if least_rate.is_finite() { least_rate } else { 0.0 };
         Ok(Self { index, params, least_rate })
     }
 

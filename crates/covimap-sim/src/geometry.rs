@@ -70,10 +70,11 @@ impl Segment {
         (self.b[0] - self.a[0]).hypot(self.b[1] - self.a[1])
     }
 
-    /// The point that far from `a` in the direction of `b`.
+    /// The point that far from `a` in the direction of `b`; `a` if both ends are one point.
     #[must_use]
     pub fn point_at(&self, distance: f64) -> Point {
-        let share = distance / self.length();
+        let length = self.length();
+        let share = if length > 0.0 { distance / length } else { 0.0 };
         [0, 1].map(|axis| self.a[axis] + share * (self.b[axis] - self.a[axis]))
     }
 
@@ -142,6 +143,7 @@ mod tests {
         assert!((wall.distance_to_point([-1.0, 0.0]) - 1.0).abs() < 1e-12);
         assert!((segment([1.0, 1.0], [1.0, 1.0]).distance_to_point([4.0, 5.0]) - 5.0).abs() < 1e-12);
         assert_eq!(wall.point_at(2.5), [1.5, 2.0]);
+        assert_eq!(segment([1.0, 2.0], [1.0, 2.0]).point_at(0.0), [1.0, 2.0]);
         // Parallel at distance 2, crossing, and one that ends 1 m short.
         let parallel = segment([-1.6, 1.2], [1.4, 5.2]);
         assert!((wall.distance_to(&parallel) - 2.0).abs() < 1e-12);

@@ -44,6 +44,7 @@
 //! 4. [`Mapper::build`]: all of it, then regions, local maps, stitching, polish and
 //!    refinement.
 //! 5. [`GlobalMap::save`], [`export`], [`mod@evaluate`]: what to do with a map.
+//! 6. [`plan::MapIndex`], [`plan::Roads`], [`plan::align()`]: a map in a planner's hands.
 //!
 //! The engine below, [`embed`], knows nothing of landmarks: distances in, coordinates out.
 

@@ -42,7 +42,7 @@ impl Args {
         let left_turns: Vec<[String; 3]> = self.turns.into_iter().map(|Triple(ids)| ids).collect();
         let known = Known { positions: truth.as_ref(), distances: &self.distances, left_turns: &left_turns };
         let aligned = align(&index, &known)?;
-        let _deferral = Deferral::new();
+        let _deferral = Deferral::of_writing();
         aligned.map.save(&self.output)?;
         if aligned.unknown > 0 {
             console.say(format_args!(

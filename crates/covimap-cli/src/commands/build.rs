@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ValueEnum;
+use covimap_embed::DistanceFamily;
 use covimap_map::{
-    GlobalMap, LogFormat, Mapper, MapperParams, Method, Phi, SightingLog, Stage, output::Output,
+    DistanceChoice, GlobalMap, LogFormat, Mapper, MapperParams, MemoryEstimate, Method, Phi, SightingLog,
+    Stage, output::Output,
 };
 
 use crate::console::{self, Console};
 use crate::interrupt::Deferral;
-use crate::options::{LogArgs, ThreadArgs, conflict};
+use crate::options::{LogArgs, ThreadArgs, conflict, size};
 use crate::progress::{self, Progress};
 use crate::summary;
 
@@ -26,6 +28,9 @@ pub struct Args {
     settings: Settings,
     #[command(flatten)]
     threads: ThreadArgs,
+    /// Refuse a log whose map would take more memory than this, such as 800M or 4G [default: no limit]
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    max_memory: Option<u64>,
     /// Print the report as one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -39,6 +44,9 @@ struct Settings {
     /// Seed of every random choice
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
+    /// Auto only: distance function, fitted to the log [default: auto, the family that foretells it best]
+    #[arg(long, value_enum, value_name = "FAMILY")]
+    distance: Option<DistanceName>,
     /// Classical only: distance function [default: phi2]
     #[arg(long, value_enum, value_name = "PHI")]
     phi: Option<PhiName>,
@@ -65,6 +73,41 @@ enum MethodName {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
+enum DistanceName {
+    /// The family that foretells held-out counts best
+    Auto,
+    /// sqrt(-0.3 ln f), not fitted
+    FixedLog,
+    /// f = f0 exp(-(d/a)^2)
+    Log,
+    /// 1/f = 1/f0 + (d/a)^2
+    Inverse,
+    /// A sensor with a sharp range
+    Lens,
+    /// f = f0 exp(-(d/a)^c)
+    Power,
+    /// A rising spline for -ln f
+    Spline,
+    /// Any falling curve
+    Isotonic,
+}
+
+impl From<DistanceName> for DistanceChoice {
+    fn from(name: DistanceName) -> Self {
+        match name {
+            DistanceName::Auto => Self::Auto,
+            DistanceName::FixedLog => Self::FixedLog,
+            DistanceName::Log => Self::Family(DistanceFamily::Log),
+            DistanceName::Inverse => Self::Family(DistanceFamily::Inverse),
+            DistanceName::Lens => Self::Family(DistanceFamily::Lens),
+            DistanceName::Power => Self::Family(DistanceFamily::Power),
+            DistanceName::Spline => Self::Family(DistanceFamily::Spline),
+            DistanceName::Isotonic => Self::Family(DistanceFamily::Isotonic),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
 enum PhiName {
     /// alpha (1/f - 1)
     Phi1,
@@ -74,17 +117,24 @@ enum PhiName {
 
 impl Args {
     pub fn run(self, console: Console) -> anyhow::Result<()> {
-        let mapper = Mapper::new(self.settings.params()?)?;
+        let params = self.settings.params()?;
+        let mapper = Mapper::new(params.clone())?;
         let path = self.output.clone().unwrap_or_else(|| default_output(&self.input.logs[0]));
         self.check_output(&path)?;
         self.threads.start()?;
 
         let progress = Progress::new(console);
         let log = SightingLog::read(&self.input.logs, self.input.format(), &progress)?;
-        let map = mapper.build(&log, &progress)?;
-        let times = progress.end();
+        let mut times = progress.end();
+        let memory = MemoryEstimate::of(&log, &params, rayon::current_num_threads());
+        memory.require(self.max_memory.unwrap_or(u64::MAX))?;
+        console.say(format_args!("memory: about {} MB", memory.peak().div_ceil(1_000_000)));
 
-        let deferral = Deferral::new();
+        let progress = Progress::new(console);
+        let map = mapper.build(&log, &progress)?;
+        times.extend(progress.end());
+
+        let deferral = Deferral::of_writing();
         map.save(&path)?;
         drop(deferral);
         console.say(summary::of(map.report()));
@@ -92,7 +142,7 @@ impl Args {
         if path != Path::new("-") {
             console.say(next_steps(&path));
         }
-        if self.json { Ok(console::print(json(&map, &path, &times))?) } else { Ok(()) }
+        if self.json { Ok(console::print(json(&map, &path, &memory, &times))?) } else { Ok(()) }
     }
 
     /// Finds out before the work whether its result can be put in place.
@@ -125,6 +175,10 @@ impl Settings {
                 "{flag} is a setting of --method classical; add that or leave {flag} out"
             )));
         }
+        if params.method != Method::Auto && self.distance.is_some() {
+            return Err(conflict("--distance is a setting of --method auto; leave one of the two out"));
+        }
+        params.auto.distance = self.distance.map_or(params.auto.distance, DistanceChoice::from);
         let classical = &mut params.classical;
         classical.alpha = self.alpha;
         classical.lo = self.lo.unwrap_or(classical.lo);
@@ -189,7 +243,12 @@ fn next_steps(map: &Path) -> String {
     )
 }
 
-fn json(map: &GlobalMap, path: &Path, times: &[(Stage, Duration)]) -> serde_json::Value {
+fn json(
+    map: &GlobalMap,
+    path: &Path,
+    memory: &MemoryEstimate,
+    times: &[(Stage, Duration)],
+) -> serde_json::Value {
     let seconds: serde_json::Map<_, _> = times
         .iter()
         .map(|(stage, time)| (progress::name(*stage).replace(' ', "_"), time.as_secs_f64().into()))
@@ -199,6 +258,7 @@ fn json(map: &GlobalMap, path: &Path, times: &[(Stage, Duration)]) -> serde_json
         "method": map.params().method,
         "seed": map.params().seed,
         "report": map.report(),
+        "memory_estimate": memory.peak(),
         "seconds": seconds,
     })
 }

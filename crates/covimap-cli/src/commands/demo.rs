@@ -79,7 +79,7 @@ fn map(log: &SightingLog, method: Method) -> anyhow::Result<GlobalMap> {
 
 fn draw(map: &GlobalMap, params: &SvgParams<'_>, picture: &Path) -> anyhow::Result<()> {
     let text = export::svg(map, params)?;
-    let _deferral = Deferral::new();
+    let _deferral = Deferral::of_writing();
     Ok(output::write_whole(picture, |out| out.write_all(text.as_bytes()))?)
 }
 

@@ -90,7 +90,7 @@ impl Args {
                 Box::new(move |out| out.write_all(picture.as_bytes()))
             }
         };
-        let _deferral = Deferral::new();
+        let _deferral = Deferral::of_writing();
         Ok(output::write_whole(&self.output, write)?)
     }
 }

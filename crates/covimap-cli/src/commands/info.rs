@@ -30,8 +30,11 @@ impl Args {
             Method::Classical => "classical",
         };
         let report = map.report();
+        let largest = report.components.first().and_then(|component| component.distances.as_ref());
+        let distances =
+            largest.map_or_else(String::new, |largest| format!("\n{}", summary::distances(largest)));
         Ok(console::print(format_args!(
-            "{}: method {method}, seed {}\n{}\n\n{}",
+            "{}: method {method}, seed {}\n{}{distances}\n\n{}",
             self.map.display(),
             map.params().seed,
             summary::of(report),

@@ -71,7 +71,7 @@ const fn correlation(with: Exploration, measure: Measure) -> Quantity {
     Quantity::Correlation { with, measure }
 }
 
-const CLAIMS: [Claim; 33] = [
+const CLAIMS: [Claim; 35] = [
     claim(
         "sim1",
         "methods, Errdel, 1000 steps",
@@ -116,6 +116,8 @@ const CLAIMS: [Claim; 33] = [
         "positive: the small room is crowded",
         difference("1.0 m", "1.5 m", 1000, Orientation),
     ),
+    claim("sim3a", "turns, Errdel, 50 steps", "0 deg best from 50 to 100 steps", ranking(50, Delaunay)),
+    claim("sim3a", "turns, Errori, 50 steps", "0 deg best from 50 to 100 steps", ranking(50, Orientation)),
     claim("sim3a", "turns, Errdel, 100 steps", "0 deg best from 50 to 100 steps", ranking(100, Delaunay)),
     claim("sim3a", "turns, Errori, 100 steps", "0 deg best from 50 to 100 steps", ranking(100, Orientation)),
     claim(
@@ -173,7 +175,7 @@ const CLAIMS: [Claim; 33] = [
         "all on one curve",
         Quantity::AtInformation { measure: Orientation },
     ),
-    claim("sim7a", "thresholds, Errori, 50 steps", "smaller is better", ranking(50, Orientation)),
+    claim("sim7a", "thresholds, Errori, 20 steps", "smaller is better", ranking(20, Orientation)),
     claim(
         "sim7a",
         "thresholds, Errori, 1000 steps",
@@ -233,10 +235,8 @@ impl Quantity {
                 Some(format!("{} / {}", texts[0].as_ref()?, texts[1].as_ref()?))
             }
             Self::Difference { of, minus, steps, measure } => {
-                let of = results.errors(results.setting(of)?, place, steps, measure);
-                let minus = results.errors(results.setting(minus)?, place, steps, measure);
-                let pairs = of.iter().filter_map(|(run, error)| Some(error - minus.get(run)?));
-                let mean = Mean::of(&pairs.collect::<Vec<_>>());
+                let cells = [(results.setting(of)?, place), (results.setting(minus)?, place)];
+                let mean = results.difference(cells[0], cells[1], steps, measure);
                 (mean.n > 0).then(|| format!("{} points", with_error(mean, 100.0, 2)))
             }
             Self::Ranking { steps, measure } => {

@@ -116,6 +116,6 @@ fn write(
     name: &str,
     contents: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), MapError> {
-    let _deferral = Deferral::new();
+    let _deferral = Deferral::of_writing();
     output::write_whole(&folder.join(name), contents)
 }

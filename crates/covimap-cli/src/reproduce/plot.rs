@@ -18,7 +18,7 @@ const INK: RGBColor = RGBColor(40, 40, 40);
 const FONT: &str = "sans-serif";
 
 /// Pixels.
-const PANEL: (u32, u32) = (430, 350);
+const PANEL: (u32, u32) = (460, 420);
 const LEGEND_WIDTH: u32 = 170;
 const TITLE_HEIGHT: u32 = 40;
 const LEGEND_LINE: i32 = 24;

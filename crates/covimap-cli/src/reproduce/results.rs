@@ -56,6 +56,20 @@ impl Results {
         Mean::of(&self.errors(setting, method, steps, measure).into_values().collect::<Vec<_>>())
     }
 
+    /// The mean of the error of one setting and method less that of another, run by run over the same worlds.
+    pub fn difference(
+        &self,
+        (of, of_method): (usize, usize),
+        (minus, minus_method): (usize, usize),
+        steps: usize,
+        measure: Measure,
+    ) -> Mean {
+        let minus = self.errors(minus, minus_method, steps, measure);
+        let of = self.errors(of, of_method, steps, measure);
+        let pairs = of.iter().filter_map(|(run, error)| Some(error - minus.get(run)?));
+        Mean::of(&pairs.collect::<Vec<_>>())
+    }
+
     /// The mean error over all settings, and the mean of what `of` makes of a sample in general: settings of
     /// one run are averaged first, since they share the world and are not independent.
     pub fn pooled(&self, steps: usize, of: impl Fn(&Sample) -> f64) -> Mean {

@@ -80,6 +80,18 @@ fn the_bytes_of_a_map_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn a_build_that_would_take_too_much_memory_is_refused_before_it_starts() {
+    let scratch = Scratch::with_square();
+    let refusal =
+        "MB of memory, 1 MB are allowed - 4 landmarks, about 5 pairs; allow more or map parts of the log";
+    scratch.refuses(&["build", "square.jsonl", "--max-memory", "1M"], 1, refusal);
+    scratch.refuses(&["build", "square.jsonl", "--max-memory", "much"], 2, "such as 800M or 1.5G");
+    let run = scratch.succeeds(&["build", "square.jsonl", "--max-memory", "1G", "--json"]);
+    assert!(run.stderr.contains("memory: about "), "{}", run.stderr);
+    assert!(run.json()["memory_estimate"].as_u64().unwrap() < 1_000_000_000);
+}
+
+#[test]
 fn several_logs_are_one_log_in_the_order_given() {
     let scratch = Scratch::with_square();
     let lines: Vec<_> = SQUARE.lines().collect();
@@ -114,6 +126,25 @@ fn every_setting_of_the_classical_method_reaches_the_map() {
             assert_ne!(changed["landmarks"], plain["landmarks"], "{key} changes nothing");
         }
     }
+}
+
+#[test]
+fn every_distance_function_reaches_the_map() {
+    let scratch = Scratch::new();
+    scratch.file("robot.jsonl", robot_log());
+    let distances = |options: &[&str]| {
+        let map = scratch.succeeds(&[&["build", "robot.jsonl", "-o", "-", "-q"], options].concat()).json();
+        (map["settings"]["auto"]["distance"].clone(), map["report"]["components"][0]["distances"].clone())
+    };
+    for family in ["log", "inverse", "lens", "power", "spline", "isotonic"] {
+        let (setting, report) = distances(&["--distance", family]);
+        assert_eq!(setting, family);
+        assert_eq!((&report["curve"]["family"], &report["learnt"]), (&family.into(), &true.into()));
+    }
+    let (setting, report) = distances(&["--distance", "fixed-log"]);
+    assert_eq!((setting, &report["learnt"]), ("fixed_log".into(), &false.into()));
+    assert_eq!(distances(&["--distance", "auto"]), distances(&[]));
+    assert_eq!(distances(&[]).1["scores"].as_array().unwrap().len(), 6);
 }
 
 #[test]

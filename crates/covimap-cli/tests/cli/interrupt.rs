@@ -4,6 +4,8 @@
 
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use crate::scratch::{SQUARE, Scratch};
 
@@ -71,4 +73,43 @@ fn a_second_interrupt_ends_a_build_that_waits() {
     assert_eq!(run.wait().unwrap().code(), Some(130));
     assert!(scratch.names().is_empty());
     drop(log);
+}
+
+#[test]
+fn work_that_does_not_come_to_its_end_is_ended() {
+    let scratch = Scratch::new();
+    let mut run = endless(&scratch, BUILD);
+    let mut log = run.stdin.take().unwrap();
+    log.write_all(SQUARE.repeat(10_000).as_bytes()).unwrap();
+    // The log stays open and says no more; nobody presses Ctrl-C again.
+    signal(&run, "INT");
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert!(scratch.names().is_empty());
+    drop(log);
+}
+
+#[test]
+fn a_build_ends_in_good_order_at_any_time() {
+    let scratch = Scratch::new();
+    scratch.succeeds(&["simulate", "hall", "--landmarks", "1500", "-q", "-o", "hall"]);
+    let mut interrupted = 0;
+    for milliseconds in [10, 150, 300, 450, 600, 750, 900] {
+        let run =
+            endless(&scratch, &["build", "hall/observations.jsonl", "-o", "map.json", "--threads", "1"]);
+        thread::sleep(Duration::from_millis(milliseconds));
+        signal(&run, "INT");
+        let output = run.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        if output.status.code() == Some(130) {
+            assert!(said.ends_with("covimap: interrupted\n"), "{said}");
+            assert_eq!(scratch.names(), ["hall"], "after {milliseconds} ms");
+            interrupted += 1;
+        } else {
+            // It was done first, and its map is whole.
+            assert_eq!(output.status.code(), Some(0), "{said}");
+            scratch.succeeds(&["info", "map.json"]);
+            std::fs::remove_file(scratch.path().join("map.json")).unwrap();
+        }
+    }
+    assert!(interrupted > 0, "no build takes so little");
 }

@@ -42,6 +42,12 @@ fn settings_that_the_method_does_not_read() {
         scratch.refuses(&["build", "square.jsonl", flag], USAGE, &message);
         scratch.succeeds(&["build", "square.jsonl", flag, "--method", "classical", "-q", "-o", "/dev/null"]);
     }
+    let message = "--distance is a setting of --method auto; leave one of the two out";
+    scratch.refuses(
+        &["build", "square.jsonl", "--method", "classical", "--distance", "lens"],
+        USAGE,
+        message,
+    );
     scratch.file("truth.csv", "id,x,y\n");
     scratch.succeeds(&["build", "square.jsonl", "-q"]);
     scratch.refuses(

@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::stress::{distance, raw_stress};
+use crate::stress::{distance, raw_stress, stress1};
 use crate::{Pair, newton, smacof};
 
 type Solver = fn(&PairDistances, &[Point], StopRule) -> Result<Embedding, EmbedError>;

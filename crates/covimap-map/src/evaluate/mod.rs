@@ -25,13 +25,17 @@
 //! [`MapError::NoCommonLandmarks`] and [`MapError::TooFewCommon`]. A measure that does not exist
 //! is `None` and `null` in JSON, never NaN: collinear truth has no orientation.
 
+mod bound;
 mod charts;
 mod edges;
+mod limit;
 mod neighbours;
 mod orientation;
 mod residual;
 
+pub use bound::Bound;
 pub(crate) use charts::{Chart, Matching};
+pub use limit::{Limit, Ratios, limit};
 pub(crate) use residual::truth_from_map;
 
 use serde::Serialize;

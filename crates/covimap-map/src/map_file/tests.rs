@@ -1,12 +1,13 @@
+use covimap_embed::{DistanceCurve, DistanceFamily, Lens};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{ComponentReport, Method, Warning};
+use crate::{ComponentReport, DistanceReport, FamilyScore, HonestyReport, Method, ShepardRow, Warning};
 
-const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
+const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"distance":"auto","local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
 {"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1,"links":[[1,2]]},
 {"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1}
-],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
+],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"honesty":{"set_aside":0,"misrecognition":null},"regions":2,"stress1":0.25,"components":[],"warnings":[]}}
 "#;
 
 fn text(map: &GlobalMap) -> String {
@@ -139,6 +140,19 @@ fn a_path_that_cannot_be_read_is_named() {
     assert!(matches!(GlobalMap::load(folder.path()), Err(MapError::Io { .. })));
 }
 
+fn distances(number: f64) -> DistanceReport {
+    DistanceReport {
+        learnt: true,
+        curve: DistanceCurve::Lens(Lens { range: number / 7.0, detectability: number }),
+        scores: vec![FamilyScore { family: DistanceFamily::Lens, held_out: -1e6 * number }],
+        sample: 3,
+        repetition: number,
+        misfit: number,
+        doubted: number,
+        shepard: vec![ShepardRow { pairs: 3, frequency: number, expected: number, distances: [number; 5] }],
+    }
+}
+
 proptest! {
     #[test]
     fn what_is_saved_is_loaded_and_saved_again_the_same(
@@ -160,8 +174,10 @@ proptest! {
         let params = MapperParams { seed, ..MapperParams::default() };
         let report = BuildReport {
             stress1,
+            honesty: HonestyReport { set_aside: seed, misrecognition: Some(stress1) },
             components: vec![ComponentReport {
                 landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true,
+                distances: Some(distances(stress1)),
             }],
             warnings: vec![Warning {
                 kind: "seen_once".into(), count: 1, examples: vec!["\u{1F916}".into()], message: "a\nb".into(),

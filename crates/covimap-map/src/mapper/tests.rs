@@ -168,7 +168,8 @@ impl Observer for Diary {
 
 #[test]
 fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
-    let auto = [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Refine];
+    let auto =
+        [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Distances, Stage::Refine];
     for (method, stages) in [(Method::Auto, &auto[..]), (Method::Classical, &[Stage::Classical])] {
         let diary = Diary::default();
         mapper(method).build(&two_halls(), &diary).unwrap();
@@ -188,6 +189,7 @@ fn a_build_stops_in_any_stage() {
         Stage::LocalMaps,
         Stage::Stitch,
         Stage::Polish,
+        Stage::Distances,
         Stage::Refine,
         Stage::Sensor,
     ];
@@ -219,4 +221,65 @@ fn the_same_bits_on_one_thread_and_on_three() {
         let run = |threads| on_threads(threads, || build(&log, method).unwrap());
         assert_eq!(run(1), run(3), "{method:?}");
     }
+}
+
+#[test]
+fn a_landmark_without_an_honest_link_is_kept_and_told() {
+    // Every hundredth sighting is of another landmark, now and then of 300, which is nowhere.
+    let points = scattered(300, [5.0, 6.0], 1);
+    let mut looks = looks(&points, [5.0, 6.0], 0.6, 6000);
+    for (number, look) in looks.iter_mut().enumerate() {
+        if number % 10 == 0
+            && let Some(seen) = look.last_mut()
+        {
+            *seen = if number % 200 == 0 { 300 } else { number * 7919 % 300 };
+        }
+        look.sort_unstable();
+        look.dedup();
+    }
+    let map = build(&log_of(&looks), Method::Auto).unwrap();
+    let report = map.report();
+    assert_eq!((map.len(), report.components.len(), report.components[0].landmarks), (301, 2, 300));
+    let of_300 = map.names().iter().position(|id| id == "300").unwrap();
+    let placed = map.landmarks()[of_300];
+    assert_eq!((placed.component, placed.partners, placed.position), (1, 0, [0.0, 0.0]));
+    assert!(placed.sightings > 25, "{placed:?}");
+    let told = report.honesty.misrecognition.unwrap();
+    assert!((0.006..0.014).contains(&told) && report.honesty.set_aside > 1000, "{:?}", report.honesty);
+    let about = |kind: &str| report.warnings.iter().find(|warning| warning.kind == kind).unwrap();
+    assert_eq!(about("all_links_doubtful").examples, ["300"]);
+    assert_eq!(about("misrecognition").count, report.honesty.set_aside);
+    assert!(report.warnings.iter().all(|warning| warning.kind != "never_together"));
+}
+
+#[test]
+fn a_start_of_ones_own_may_be_in_any_frame_and_unit() {
+    let points = scattered(30, [2.0, 2.0], 3);
+    let log = log_of(&looks(&points, [2.0, 2.0], 0.6, 600));
+    let from = |start: &[Point], method| mapper(method).build_from(&log, start, &Silent).unwrap();
+    let map = from(&points, Method::Auto);
+    // Turned by a right angle, mirrored, and in millimetres somewhere else.
+    let moved: Vec<Point> = points.iter().map(|[x, y]| [1000.0 * y + 77.0, 1000.0 * x - 5.0]).collect();
+    for (a, b) in map.landmarks().iter().zip(from(&moved, Method::Auto).landmarks()) {
+        assert!(distance(a.position, b.position) < 1e-4, "{:?} {:?}", a.position, b.position);
+    }
+    assert_eq!(map.report().regions, 1);
+    // The paper's method has no start; what is built is a map by auto, and says so.
+    assert_eq!(from(&points, Method::Classical), map);
+}
+
+#[test]
+fn starts_that_do_not_fit_the_log() {
+    let log = SightingLog::from_steps([["A", "B"], ["B", "C"]]);
+    let refusal = |start: &[Point]| mapper(Method::Auto).build_from(&log, start, &Silent).unwrap_err();
+    assert!(matches!(
+        refusal(&[[0.0; 2]; 2]),
+        MapError::Embed(EmbedError::BadStart { found: 2, wanted: 3, .. })
+    ));
+    for bad in [f64::NAN, f64::INFINITY] {
+        assert!(matches!(refusal(&[[0.0; 2], [1.0, bad], [1.0; 2]]), MapError::NotFinite { index: 1, .. }));
+    }
+    // All in one place: no scale.
+    let refused = refusal(&[[1.0; 2]; 3]);
+    assert!(matches!(refused, MapError::Embed(EmbedError::CoincidingPoints { pairs: 2 })), "{refused}");
 }

@@ -45,6 +45,7 @@ fn the_least_settings_that_are_allowed_make_a_map() {
         regions: RegionParams { core: 4, members: 8, halo_links: 1 },
         local_stop: stop,
         polish_stop: stop,
+        distance: DistanceChoice::FixedLog,
         refine_iterations: 0,
     };
     assert!(build(params).landmarks().iter().all(|landmark| landmark.position[0].is_finite()));
@@ -71,6 +72,19 @@ fn settings_are_read_as_they_are_written_and_unknown_ones_refused() {
     }
 }
 
+#[test]
+fn a_distance_function_is_written_by_its_name() {
+    let written = |choice| serde_json::to_string::<DistanceChoice>(&choice).unwrap();
+    assert_eq!(written(DistanceChoice::Auto), r#""auto""#);
+    assert_eq!(written(DistanceChoice::FixedLog), r#""fixed_log""#);
+    for family in DistanceFamily::ALL {
+        let text = written(DistanceChoice::Family(family));
+        assert_eq!(text, format!("{:?}", family.name()));
+        assert_eq!(serde_json::from_str::<DistanceChoice>(&text).unwrap(), DistanceChoice::Family(family));
+    }
+    assert!(serde_json::from_str::<DistanceChoice>(r#""cosine""#).is_err());
+}
+
 fn build(params: MapperParams) -> GlobalMap {
     let extent = [4.0, 5.0];
     let log = log_of(&looks(&scattered(200, extent, 1), extent, 0.6, 1500));
@@ -82,7 +96,7 @@ type Change = (&'static str, fn(&mut MapperParams));
 
 #[test]
 fn every_setting_reaches_the_code() {
-    let auto: [Change; 9] = [
+    let auto: [Change; 10] = [
         ("core", |p| p.auto.regions.core = 20),
         ("members", |p| p.auto.regions.members = 30),
         ("halo_links", |p| p.auto.regions.halo_links = 1),
@@ -90,6 +104,7 @@ fn every_setting_reaches_the_code() {
         ("local tolerance", |p| p.auto.local_stop.tolerance = 0.1),
         ("polish steps", |p| p.auto.polish_stop.max_iterations = 1),
         ("polish tolerance", |p| p.auto.polish_stop.tolerance = 0.1),
+        ("distance", |p| p.auto.distance = DistanceChoice::Family(DistanceFamily::Lens)),
         ("refinement", |p| p.auto.refine_iterations = 1),
         ("method", |p| p.method = Method::Classical),
     ];

@@ -53,6 +53,8 @@ impl Cutting {
 /// The visibility curve on all cuttings.
 pub(super) struct Sight {
     pub spacing: f64,
+    /// `e`.
+    pub false_sighting: f32,
     /// `v`.
     visibility: Vec<f32>,
     /// `v (1 - v) / (s d)` times the spacing: the slope of `-v` along `d` over `d`, per spacing.
@@ -64,8 +66,12 @@ impl Sight {
         let spacing = SPACING * sensor.range;
         let parts = PARTS as usize;
         let length = parts * parts * WIDTH * WIDTH;
-        let mut sight =
-            Self { spacing, visibility: Vec::with_capacity(length), slope: Vec::with_capacity(length) };
+        let mut sight = Self {
+            spacing,
+            false_sighting: sensor.false_sighting as f32,
+            visibility: Vec::with_capacity(length),
+            slope: Vec::with_capacity(length),
+        };
         for table in 0..parts * parts {
             let within = [table % parts, table / parts].map(|part| part as f64 / f64::from(PARTS));
             for entry in 0..WIDTH * WIDTH {
@@ -105,7 +111,7 @@ impl Sight {
 mod tests {
     use super::*;
 
-    const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9 };
+    const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9, false_sighting: 1e-3 };
 
     #[test]
     fn cuttings_hold_the_curve_from_wherever_the_landmark_is() {

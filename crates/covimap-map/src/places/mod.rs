@@ -6,8 +6,8 @@
 //!
 //! `P_i(y) = e + (p_i - e) / (1 + exp((|y - x_i| - R) / s))`  (1)
 //!
-//! with a range `R` and an edge width `s` shared by all, and a detectability `p_i` of each
-//! landmark. The log-likelihood of the log is, up to a constant,
+//! with a range `R`, an edge width `s` and a probability `e` of a false sighting shared by all, and a
+//! detectability `p_i` of each landmark. The log-likelihood of the log is, up to a constant,
 //!
 //! `sum_t ln sum_y prod_{i seen at t} P_i(y) prod_{j not seen, but near} (1 - P_j(y))`.  (2)
 //!
@@ -21,7 +21,7 @@
 //! # Algorithm
 //! Expectation-maximisation. The posterior of each step's place is taken on a [`grid`] around the
 //! landmarks seen ([`posterior`]); then every landmark makes one Fisher-scoring step in position
-//! and detectability ([`scoring`]), and `s` one in common ([`sensor`]). `R` is fitted first and
+//! and detectability ([`scoring`]), and `s` and `e` one in common ([`sensor`]). `R` is fitted first and
 //! then held: it fixes the unit.
 //!
 //! # Complexity
@@ -54,7 +54,7 @@ pub(crate) use observe::observe;
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 pub(crate) use sensor::Sensor;
-use sensor::SensorScores;
+use sensor::{FALSE_SIGHTING, SensorScores};
 pub(crate) use sets::SeenSets;
 
 /// Sets of one parallel task.
@@ -109,7 +109,8 @@ pub(crate) fn refine(
 /// The sensor that fits these positions best; detectabilities are all the same so far.
 fn fit_sensor(graph: &LinkGraph, neighbours: &Neighbours, sets: &SeenSets, points: Vec<Point>) -> Model {
     let range = half_far_link(graph, &points);
-    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8 };
+    let false_sighting = FALSE_SIGHTING.0;
+    let sensor = Sensor { range, edge: 0.15 * range, detectability: 0.8, false_sighting };
     let mut model = Model { detectability: Vec::new(), points, sensor };
     for _ in 0..SENSOR_STEPS {
         model.detectability = vec![model.sensor.detectability; graph.landmarks()];

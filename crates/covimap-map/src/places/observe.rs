@@ -4,7 +4,7 @@
 use covimap_embed::Point;
 
 use super::posterior::{Neighbours, Posterior, Step, Witness, Workspace};
-use super::sensor::{FALSE_SIGHTING, Sensor};
+use super::sensor::Sensor;
 use super::{Model, SENSOR_SETS, SENSOR_STEPS, SeenSets, fit_sensor, landmark_scores, sensor_scores};
 use crate::{LinkGraph, MapError, Observer};
 
@@ -68,12 +68,13 @@ fn outliers(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> f64 {
 
 /// Probability that a sighting is a true one, over the places of its step.
 fn truly(posterior: &Posterior, step: &Step, witness: &Witness) -> f32 {
+    let false_sighting = posterior.sight().false_sighting;
     let mut truly = 0.0;
     for row in step.rows.clone() {
         let visibility = posterior.sight().visibility(witness.cutting, row);
         for (v, weight) in visibility.iter().zip(&step.places[row]) {
-            let by_sight = (witness.detectability - FALSE_SIGHTING) * v;
-            let falsely = FALSE_SIGHTING * (1.0 - v) / (FALSE_SIGHTING + by_sight);
+            let by_sight = (witness.detectability - false_sighting) * v;
+            let falsely = false_sighting * (1.0 - v) / (false_sighting + by_sight);
             truly += weight * (1.0 - falsely);
         }
     }

@@ -6,7 +6,6 @@ use covimap_embed::Point;
 
 use super::Model;
 use super::grid::{CELLS, Cells, Cutting, NEAR, Sight};
-use super::sensor::FALSE_SIGHTING;
 use crate::LinkGraph;
 
 /// Places below this share of the most likely one are passed over.
@@ -158,11 +157,11 @@ impl<'a> Posterior<'a> {
     /// Probability of the step's sightings from every place, eq. (2), up to a common factor.
     fn multiply(&self, witnesses: &[Witness], places: &mut Cells) {
         *places = [[1.0; CELLS]; CELLS];
+        let e = self.sight.false_sighting;
         for some in witnesses.chunks(SCALED) {
             for witness in some {
-                let by_sight = witness.detectability - FALSE_SIGHTING;
-                let (constant, factor) =
-                    if witness.seen { (FALSE_SIGHTING, by_sight) } else { (1.0 - FALSE_SIGHTING, -by_sight) };
+                let by_sight = witness.detectability - e;
+                let (constant, factor) = if witness.seen { (e, by_sight) } else { (1.0 - e, -by_sight) };
                 for (row, places) in places.iter_mut().enumerate() {
                     let visibility = self.sight.visibility(witness.cutting, row);
                     for (place, v) in places.iter_mut().zip(visibility) {

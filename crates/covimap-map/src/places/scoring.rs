@@ -13,7 +13,7 @@ use covimap_embed::Point;
 
 use super::grid::{CELLS, Sight};
 use super::posterior::{Step, Witness};
-use super::sensor::{DETECTABILITY, FALSE_SIGHTING};
+use super::sensor::DETECTABILITY;
 
 /// Share of the mean information added to both axes: a landmark seen from one side only would
 /// otherwise be thrown along the circle.
@@ -72,7 +72,7 @@ impl Scores {
     /// Of a landmark, from one step.
     fn of(witness: &Witness, step: &Step, sight: &Sight) -> Self {
         let [x, y] = witness.cutting.offset;
-        let by_sight = witness.detectability - FALSE_SIGHTING;
+        let by_sight = witness.detectability - sight.false_sighting;
         let seen = f32::from(u8::from(witness.seen));
         let along: Lanes = std::array::from_fn(|column| x - column as f32);
         let zero: Lanes = [0.0; CELLS];
@@ -84,7 +84,7 @@ impl Scores {
             let slope = sight.slope(witness.cutting, row);
             for k in 0..CELLS {
                 let v = visibility[k];
-                let probability = FALSE_SIGHTING + by_sight * v;
+                let probability = sight.false_sighting + by_sight * v;
                 let information = weights[k] / (probability * (1.0 - probability));
                 let surprise = information * (seen - probability);
                 let by_offset = by_sight * slope[k];

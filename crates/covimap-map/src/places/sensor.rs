@@ -3,8 +3,9 @@
 use super::grid::SPACING;
 use super::posterior::Step;
 
-/// Probability `e` of a sighting that should not be.
-pub(super) const FALSE_SIGHTING: f32 = 1e-3;
+/// Bounds of the probability `e` of a sighting that should not be. It starts at the lower one: walls
+/// and soft edges let even a faultless log look a little false.
+pub(super) const FALSE_SIGHTING: (f64, f64) = (1e-3, 0.2);
 /// Narrowest edge, as a share of the range: the grid of places resolves no finer.
 const NARROWEST: f64 = 0.03;
 /// Largest relative change of the range in one step.
@@ -13,6 +14,8 @@ const RANGE_STEP: f64 = 0.1;
 const EDGE_STEP: f64 = 0.3;
 /// Largest change of the common detectability in one step.
 const DETECTABILITY_STEP: f64 = 0.2;
+/// Largest change of the probability of a false sighting in one step.
+const FALSE_STEP: f64 = 0.02;
 /// Bounds of a detectability.
 pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
 
@@ -25,6 +28,8 @@ pub(crate) struct Sensor {
     pub edge: f64,
     /// Detectability of a landmark of which nothing else is known.
     pub detectability: f64,
+    /// Probability `e` that a step shows a landmark nearby which cannot be seen from there.
+    pub false_sighting: f64,
 }
 
 impl Sensor {
@@ -34,16 +39,17 @@ impl Sensor {
     }
 }
 
-/// Score and information of the range, of the logarithm of the edge and of a change of all
-/// detectabilities.
+/// Score and information of the range, of the logarithm of the edge, of a change of all
+/// detectabilities and of the probability of a false sighting.
 ///
-/// The derivatives of eq. (1) are `(p - e) v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, and `v` by
-/// `p`.
+/// The derivatives of eq. (1) are `(p - e) v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, `v` by `p`
+/// and `1 - v` by `e`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SensorScores {
     range: [f64; 2],
     log_edge: [f64; 2],
     detectability: [f64; 2],
+    false_sighting: [f64; 2],
 }
 
 impl SensorScores {
@@ -51,17 +57,17 @@ impl SensorScores {
     pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor) {
         let spacing = SPACING * sensor.range;
         for witness in step.witnesses {
-            let detectability = f64::from(witness.detectability);
+            let by_sight = f64::from(witness.detectability) - sensor.false_sighting;
             for row in step.rows.clone() {
                 for (column, &weight) in step.places[row].iter().enumerate().filter(|place| *place.1 > 0.0) {
                     let [x, y] = witness.cutting.offset.map(f64::from);
                     let (dx, dy) = (x - column as f64, y - row as f64);
                     let distance = (dx * dx + dy * dy).sqrt() * spacing;
                     let v = sensor.visibility(distance);
-                    let p = f64::from(FALSE_SIGHTING) + (detectability - f64::from(FALSE_SIGHTING)) * v;
+                    let p = sensor.false_sighting + by_sight * v;
                     let information = times * f64::from(weight) / (p * (1.0 - p));
                     let surprise = information * (f64::from(u8::from(witness.seen)) - p);
-                    let by_range = (detectability - f64::from(FALSE_SIGHTING)) * v * (1.0 - v) / sensor.edge;
+                    let by_range = by_sight * v * (1.0 - v) / sensor.edge;
                     let by_edge = by_range * (distance - sensor.range);
                     self.range[0] += surprise * by_range;
                     self.range[1] += information * by_range * by_range;
@@ -69,6 +75,8 @@ impl SensorScores {
                     self.log_edge[1] += information * by_edge * by_edge;
                     self.detectability[0] += surprise * v;
                     self.detectability[1] += information * v * v;
+                    self.false_sighting[0] += surprise * (1.0 - v);
+                    self.false_sighting[1] += information * (1.0 - v) * (1.0 - v);
                 }
             }
         }
@@ -79,6 +87,7 @@ impl SensorScores {
             (&mut self.range, other.range),
             (&mut self.log_edge, other.log_edge),
             (&mut self.detectability, other.detectability),
+            (&mut self.false_sighting, other.false_sighting),
         ] {
             sum[0] += more[0];
             sum[1] += more[1];
@@ -94,10 +103,12 @@ impl SensorScores {
         let range = sensor.range + moved;
         let edge = sensor.edge * step(self.log_edge, EDGE_STEP).exp();
         let detectability = sensor.detectability + step(self.detectability, DETECTABILITY_STEP);
+        let false_sighting = sensor.false_sighting + step(self.false_sighting, FALSE_STEP);
         Sensor {
             range,
             edge: edge.max(NARROWEST * range),
             detectability: detectability.clamp(DETECTABILITY.0, DETECTABILITY.1),
+            false_sighting: false_sighting.clamp(FALSE_SIGHTING.0, FALSE_SIGHTING.1),
         }
     }
 }

@@ -15,7 +15,8 @@ pub(crate) struct SeenSets {
 impl SeenSets {
     /// The sets of every component; landmarks are numbered by their places in their component.
     ///
-    /// All landmarks of a step lie in one component, that of its first.
+    /// A step whose sightings lie in several components is a set of each: what it shows of another one is
+    /// a recognition error in its eyes.
     pub fn by_component(log: &SightingLog, components: &[Vec<u32>]) -> Vec<Self> {
         let mut place = vec![(0, 0); log.names().len()];
         for (component, members) in components.iter().enumerate() {
@@ -24,17 +25,29 @@ impl SeenSets {
             }
         }
         let mut steps = vec![Vec::new(); components.len()];
-        for step in (0..log.steps()).filter(|&step| log.step(step).len() >= 2) {
-            steps[place[log.step(step)[0] as usize].0].push(step);
+        for step in 0..log.steps() {
+            let of = |&landmark: &u32| place[landmark as usize].0;
+            let seen = log.step(step);
+            for (k, component) in seen.iter().map(of).enumerate() {
+                // At the second of the landmarks that lie in this component.
+                if seen[..k].iter().filter(|other| of(other) == component).count() == 1 {
+                    steps[component].push(step);
+                }
+            }
         }
-        steps.into_iter().map(|steps| Self::of_steps(log, steps, &place)).collect()
+        let sets = |(component, steps)| Self::of_steps(log, component, steps, &place);
+        steps.into_iter().enumerate().map(sets).collect()
     }
 
-    fn of_steps(log: &SightingLog, mut steps: Vec<usize>, place: &[(usize, u32)]) -> Self {
-        steps.par_sort_unstable_by(|&a, &b| log.step(a).cmp(log.step(b)));
+    fn of_steps(log: &SightingLog, component: usize, mut steps: Vec<usize>, place: &[(usize, u32)]) -> Self {
+        let set = |step: usize| {
+            let places = log.step(step).iter().map(|&landmark| place[landmark as usize]);
+            places.filter(|place| place.0 == component).map(|place| place.1)
+        };
+        steps.par_sort_unstable_by(|&a, &b| set(a).cmp(set(b)));
         let mut sets = Self { starts: vec![0], seen: Vec::new(), times: Vec::new() };
-        for equal in steps.chunk_by(|&a, &b| log.step(a) == log.step(b)) {
-            sets.seen.extend(log.step(equal[0]).iter().map(|&landmark| place[landmark as usize].1));
+        for equal in steps.chunk_by(|&a, &b| set(a).eq(set(b))) {
+            sets.seen.extend(set(equal[0]));
             sets.starts.push(sets.seen.len());
             sets.times.push(equal.len() as u32);
         }
@@ -90,6 +103,23 @@ mod tests {
         assert_eq!((other.len(), other.seen(0), other.times(0)), (1, [0, 1].as_slice(), 1.0));
         assert_eq!((sets.seen(0), sets.times(0)), ([0, 1].as_slice(), 2.0));
         assert_eq!((sets.seen(1), sets.times(1)), ([0, 1, 2].as_slice(), 1.0));
+    }
+
+    #[test]
+    fn a_step_is_a_set_of_every_component_that_it_shows_twice() {
+        let log = SightingLog::from_steps([
+            vec!["A", "B", "C", "D", "E"],
+            vec!["A", "B", "D"],
+            vec!["C", "D", "E"],
+            vec!["A", "D"],
+        ]);
+        // A, B and C; D and E: a step that shows but one of the two says nothing of them.
+        let [abc, de] = &SeenSets::by_component(&log, &[vec![0, 1, 2], vec![3, 4]])[..] else {
+            panic!("one list of sets a component");
+        };
+        assert_eq!((abc.len(), abc.seen(0), abc.times(0)), (2, [0, 1].as_slice(), 1.0));
+        assert_eq!((abc.seen(1), abc.times(1)), ([0, 1, 2].as_slice(), 1.0));
+        assert_eq!((de.len(), de.seen(0), de.times(0)), (1, [0, 1].as_slice(), 2.0));
     }
 
     #[test]

@@ -21,7 +21,7 @@ struct Hall {
 }
 
 /// The truth of [`looks`].
-const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.08 * 0.6, detectability: 0.9 };
+const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.08 * 0.6, detectability: 0.9, false_sighting: 1e-3 };
 
 fn hall(n: usize, steps: usize) -> Hall {
     let extent = [2.0, n as f64 / 20.0];
@@ -174,11 +174,11 @@ fn sightings_that_contradict_each_other_do_no_harm() {
 fn the_sensor_moves_to_the_truth() {
     let hall = hall(80, 6000);
     let mut model = hall.true_model();
-    model.sensor = Sensor { range: 0.48, edge: 0.12, detectability: 0.6 };
+    model.sensor = Sensor { range: 0.48, edge: 0.12, detectability: 0.6, false_sighting: 1e-3 };
     model.detectability = vec![0.6; 80];
     let mut misses = Vec::new();
     for _ in 0..12 {
-        let Sensor { range, edge, detectability } = model.sensor;
+        let Sensor { range, edge, detectability, .. } = model.sensor;
         misses.push([(range / 0.6).ln().abs(), (edge / 0.048).ln().abs(), (detectability - 0.9).abs()]);
         model.sensor =
             sensor_scores(&Neighbours::new(&hall.graph), &hall.sets, &model).improve(model.sensor, true);
@@ -187,10 +187,30 @@ fn the_sensor_moves_to_the_truth() {
     // The first step already helps each of the three, and the last is near: the grid of places is
     // 0.12 wide, which blurs the edge.
     assert!((0..3).all(|k| misses[1][k] < misses[0][k]), "{misses:?}");
-    let Sensor { range, edge, detectability } = model.sensor;
+    let Sensor { range, edge, detectability, .. } = model.sensor;
     assert!((range / 0.6 - 1.0).abs() < 0.05, "{range}");
     assert!((0.7..1.7).contains(&(edge / 0.048)), "{edge}");
     assert!((detectability - 0.9).abs() < 0.05, "{detectability}");
+}
+
+#[test]
+fn the_rate_of_false_sightings_is_learnt_from_a_small_room() {
+    // In a room of 20 landmarks, all of them near; each is seen by mistake in 3 steps of a hundred.
+    let points = scattered(20, [1.5, 1.5], 4);
+    for (share, lowest, highest) in [(0.0, 0.001, 0.004), (0.03, 0.02, 0.04)] {
+        let mut looks = looks(&points, [1.5, 1.5], 0.6, 3000);
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        for look in &mut looks {
+            let missing: Vec<usize> = (0..20).filter(|i| !look.contains(i)).collect();
+            look.extend(missing.into_iter().filter(|_| rng.random_bool(share)));
+            look.sort_unstable();
+        }
+        let log = log_of(&looks);
+        let graph = LinkGraph::from_counts(&counts_of(&log));
+        let sets = only(SeenSets::by_component(&log, &[(0..20).collect()]));
+        let learnt = refine(&graph, &sets, points.clone(), 3, &Silent).unwrap().sensor.false_sighting;
+        assert!((lowest..highest).contains(&learnt), "{learnt} for {share}");
+    }
 }
 
 #[test]

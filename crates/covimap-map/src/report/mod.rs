@@ -5,7 +5,10 @@ mod warnings;
 
 use serde::{Deserialize, Serialize};
 
+use crate::DistanceReport;
 pub(crate) use warnings::{aliases_warning, warnings};
+
+use crate::HonestyReport;
 
 /// A finding that a reader of the map should know of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,7 +30,7 @@ pub struct ComponentReport {
     pub landmarks: u64,
     /// Number of regions.
     pub regions: u64,
-    /// Number of co-seen pairs.
+    /// Number of linked pairs.
     pub pairs: u64,
     /// Kruskal's stress-1 of the final positions over those pairs; 0 is perfect.
     pub stress1: f64,
@@ -35,6 +38,10 @@ pub struct ComponentReport {
     pub iterations: u64,
     /// Whether the polish met its tolerance.
     pub converged: bool,
+    /// Frequencies and distances; none of the classical method, and of components with fewer than
+    /// three pairs a landmark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distances: Option<DistanceReport>,
 }
 
 /// What was read, what was built, and how good it is.
@@ -46,8 +53,11 @@ pub struct BuildReport {
     pub sightings: u64,
     /// Landmarks seen at least once.
     pub landmarks: u64,
-    /// Pairs seen together at least once.
+    /// Pairs that are linked: seen together, and not set aside.
     pub pairs: u64,
+    /// What the log says of recognition errors.
+    #[serde(default)]
+    pub honesty: HonestyReport,
     /// Regions over all components.
     pub regions: u64,
     /// Stress-1 over all components.

@@ -1,15 +1,18 @@
 //! Findings in counts and graph that a reader of the map should know of.
 
 use super::{ComponentReport, Warning};
-use crate::{CoVisibility, LandmarkId, LandmarkNames, LinkGraph};
+use crate::{CoVisibility, HonestyReport, LandmarkId, LandmarkNames, LinkGraph};
 
 /// IDs named in a warning; the rest is only counted.
 const EXAMPLES: usize = 10;
+/// Share of misrecognised sightings from which on a reader is told.
+const NOTABLE: f64 = 0.002;
 
 /// All warnings of a build, in a fixed order.
 pub(crate) fn warnings(
     counts: &CoVisibility,
     graph: &LinkGraph,
+    honesty: HonestyReport,
     components: &[ComponentReport],
     names: &LandmarkNames,
 ) -> Vec<Warning> {
@@ -25,7 +28,8 @@ pub(crate) fn warnings(
         }
         (count > 0).then(|| Warning { kind: kind.to_owned(), count, examples, message: message.to_owned() })
     };
-    let alone = |id: LandmarkId| graph.of(id.0).is_empty();
+    let alone = |id: LandmarkId| counts.row(id).0.is_empty();
+    let stranded = |id: LandmarkId| graph.of(id.0).is_empty() && !alone(id);
     let loose = |id: LandmarkId| (1..3).contains(&graph.of(id.0).len());
     let twin = |id: LandmarkId| {
         let (partners, together) = counts.row(id);
@@ -49,6 +53,12 @@ pub(crate) fn warnings(
              relative to the others",
         ),
         warn(
+            "all_links_doubtful",
+            &mut landmarks().filter(|&id| stranded(id)),
+            "seen together with others no more often than recognition errors alone would have it; each is a \
+             component of its own and has no place relative to the others",
+        ),
+        warn(
             "few_partners",
             &mut landmarks().filter(|&id| loose(id) && graph.landmarks() > 3),
             "seen together with fewer than three others, which leaves a choice of places; look for steps that \
@@ -64,7 +74,7 @@ pub(crate) fn warnings(
     .into_iter()
     .flatten()
     .collect();
-    warnings.extend(component_warnings(components));
+    warnings.extend(warnings_without_ids(honesty, components));
     warnings
 }
 
@@ -84,7 +94,10 @@ pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>) -
     )
 }
 
-fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Warning> {
+fn warnings_without_ids(
+    honesty: HonestyReport,
+    components: &[ComponentReport],
+) -> impl Iterator<Item = Warning> {
     let warn = |kind: &str, count: usize, message: String| {
         (count > 0).then(|| Warning {
             kind: kind.to_owned(),
@@ -93,10 +106,20 @@ fn component_warnings(components: &[ComponentReport]) -> impl Iterator<Item = Wa
             message,
         })
     };
+    let misread = honesty.misrecognition.filter(|&rate| rate >= NOTABLE);
     let several = components.len() > 1;
     let unfinished = components.iter().filter(|component| !component.converged).count();
     let tiny = components.len() == 1 && components[0].landmarks <= 3;
     [
+        warn(
+            "misrecognition",
+            misread.map_or(0, |_| honesty.set_aside as usize),
+            format!(
+                "pairs seem to be seen together by mistake only and are not linked: about {:.1} % of the sightings \
+                 show another landmark than was there; look at the recogniser",
+                100.0 * misread.unwrap_or(0.0)
+            ),
+        ),
         warn(
             "components",
             if several { components.len() } else { 0 },

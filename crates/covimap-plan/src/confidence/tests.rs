@@ -1,6 +1,8 @@
+use std::sync::Arc;
+
 use super::*;
 use crate::MapIndex;
-use crate::fixtures::{empty, index_of, lines_among, scattered};
+use crate::fixtures::{SIGHTINGS, empty, index_of, lines_among, map_seen, scattered};
 
 fn covariance_of(index: &MapIndex, id: &str) -> Covariance {
     index.covariance(id).unwrap()
@@ -17,12 +19,12 @@ fn the_variance_of_a_lone_landmark_is_that_of_the_range() {
 
 #[test]
 fn a_line_of_sight_holds_along_itself_alone() {
-    // f = 50.5 / 151, d = sqrt(-0.3 ln f) = 0.57325; the map has the two 1 apart, so u = 1 / d.
+    // f = 50.5 / 151, d = sqrt(-0.3 ln f) = 0.57323; the map has the two 1 apart, so u = 1 / d.
     let index = index_of(&[[0.0, 0.0], [0.0, 1.0]], &[(0, 1, 50)]);
     let found = covariance_of(&index, "L0");
     let f: f64 = 50.5 / 151.0;
     let d = (-0.3 * f.ln()).sqrt();
-    assert!((d - 0.57325).abs() < 1e-5);
+    assert!((d - 0.57323).abs() < 1e-5);
     // v = u^2 (alpha / 2 d)^2 (1 - f) / n.
     let v = (0.15 / d / d).powi(2) * (1.0 - f) / 50.0;
     let range = (0.5 / 1.7 / d).powi(2);
@@ -45,14 +47,18 @@ fn a_landmark_on_another_has_no_direction_to_it() {
 #[test]
 fn more_evidence_is_more_certain() {
     let points = scattered(30, 5);
-    let few = lines_among(&points, 2);
-    let many: Vec<_> = few.iter().map(|&(a, b, steps)| (a, b, steps.min(45) * 2)).collect();
-    let half: Vec<_> = few.iter().map(|&(a, b, steps)| (a, b, steps.min(45))).collect();
-    let [many, half] = [many, half].map(|lines| index_of(&points, &lines));
-    let mean = |index: &MapIndex| {
-        (0..30).map(|i| index.covariance(LandmarkId(i)).unwrap().deviation()).sum::<f64>() / 30.0
+    let placed: Vec<_> = points.iter().map(|&point| (point, 0)).collect();
+    // Everything seen so many times as often: the same frequencies from more counts.
+    let index = |times: u32| {
+        let lines: Vec<_> =
+            lines_among(&points, 2).iter().map(|&(a, b, steps)| (a, b, times * steps)).collect();
+        MapIndex::new(Arc::new(map_seen(&placed, &lines, times * SIGHTINGS)))
     };
-    assert!(mean(&many) < mean(&half));
+    let [once, often] = [1, 16].map(index);
+    for id in (0..30).map(LandmarkId) {
+        let [once, often] = [&once, &often].map(|index| index.covariance(id).unwrap().deviation());
+        assert!(often < once, "{id:?}: {often} {once}");
+    }
 }
 
 #[test]
@@ -69,7 +75,7 @@ fn the_unit_of_the_map_does_not_matter() {
 
 #[test]
 fn variances_grow_with_the_distance_in_map_units() {
-    // As in the second test: u = 1 / 0.57325. Over four map units they double.
+    // As in the second test: u = 1 / 0.57323. Over four map units they double.
     let index = index_of(&[[0.0, 0.0], [0.0, 1.0]], &[(0, 1, 50)]);
     let unit = 1.0 / (-0.3 * (50.5f64 / 151.0).ln()).sqrt();
     assert_eq!(index.growth(0, 0.0), 1.0);

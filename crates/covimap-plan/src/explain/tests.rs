@@ -1,5 +1,5 @@
 use super::*;
-use crate::fixtures::{index_of, map_of, square_and_pair};
+use crate::fixtures::{index_of, map_of, map_seen, square_and_pair};
 
 fn kinds(explanation: &Explanation) -> Vec<&str> {
     explanation.advice.iter().map(|advice| advice.kind).collect()
@@ -75,16 +75,7 @@ fn a_landmark_seen_once_and_a_loose_one_are_told() {
     let found = explain(&index_of(&points, &lines), "L9").unwrap();
     assert!(kinds(&found).contains(&"loose"), "{found:?}");
     assert!(found.deviation > 2.0 * found.typical_deviation);
-    let mut map = map_of(&[([0.0; 2], 0), ([1.0, 0.0], 0)], &[(0, 1, 1)]);
-    let mut landmarks = map.landmarks().to_vec();
-    landmarks[0].sightings = 1;
-    map = covimap_map::GlobalMap::from_parts(
-        map.names().clone(),
-        landmarks,
-        map.params().clone(),
-        map.report().clone(),
-    )
-    .unwrap();
+    let map = map_seen(&[([0.0; 2], 0), ([1.0, 0.0], 0)], &[(0, 1, 1)], 1);
     let once = explain(&MapIndex::new(std::sync::Arc::new(map)), "L0").unwrap();
     assert_eq!(kinds(&once), ["seen_once", "few_partners"]);
 }

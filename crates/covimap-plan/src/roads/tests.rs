@@ -118,7 +118,7 @@ fn the_bound_changes_no_cost() {
     points[7] = points[40];
     let index = index_of(&points, &lines_among(&points, 1));
     for objective in [Objective::Shortest, Objective::Safest] {
-        let roads = Roads::new(&index, params(objective, 20)).unwrap();
+        let roads = Roads::new(&index, params(objective, 35)).unwrap();
         let pairs: Vec<[LandmarkId; 2]> = (0..60).map(|i| [LandmarkId(i), LandmarkId(119 - i)]).collect();
         let mut found = 0;
         for &[from, to] in &pairs {
@@ -133,6 +133,16 @@ fn the_bound_changes_no_cost() {
         }
         assert!(found > 40, "{found}");
     }
+}
+
+#[test]
+fn landmarks_at_one_place_have_ways_of_no_length() {
+    // Two legs of f = 80.5 / 121 cost less than one of f = 2.5 / 199.
+    let index = index_of(&[[1.0, 2.0]; 3], &[(0, 1, 80), (1, 2, 80), (0, 2, 2)]);
+    let safest = Roads::new(&index, params(Objective::Safest, 1)).unwrap().route("L0", "L2").unwrap();
+    assert_eq!((numbers(&safest), safest.length), (vec![0, 1, 2], 0.0));
+    let shortest = Roads::new(&index, RoadParams::default()).unwrap().route("L0", "L2").unwrap();
+    assert_eq!(shortest.length, 0.0);
 }
 
 #[test]

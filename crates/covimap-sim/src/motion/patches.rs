@@ -5,8 +5,12 @@ use crate::floor_plan::FloorPlan;
 use crate::geometry::{Point, Rect, Segment};
 use crate::grid::BoxGrid;
 
-/// Longest side of a patch, metres: what is seen from somewhere in it covers it about.
-const PATCH: f64 = 1.5;
+/// Longest side of a patch, metres: what is seen from a few places in it covers it. Corridors up to this width
+/// are not cut lengthwise, so that their patches are a row and a patrol goes from end to end.
+const PATCH: f64 = 1.7;
+
+/// What an opening must be wider than twice the clearance, metres: equal lengths differ by rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// How far behind an opening the robot aims, so that it really goes through, metres.
 const BEHIND: f64 = 0.2;
@@ -37,7 +41,7 @@ impl Patches {
         let mut doorways = vec![Vec::new(); plan.tiles().len()];
         for portal in plan.portals() {
             let width = portal.opening.length();
-            if width > 2.0 * clearance {
+            if width > 2.0 * clearance + ROUNDING {
                 let passage = Segment {
                     a: portal.opening.point_at(clearance),
                     b: portal.opening.point_at(width - clearance),

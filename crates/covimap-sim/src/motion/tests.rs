@@ -113,9 +113,9 @@ fn without_turns_the_robot_goes_straight_until_something_is_in_its_way() {
 
 #[test]
 fn all_motions_but_way_points_come_past_every_part_of_a_corridor() {
-    // 2000 landmarks: 200 m of corridor. A random walk needs far more than 40 steps a landmark.
+    // 2000 landmarks: 125 and 200 m of corridor. A random walk needs far more than 40 steps a landmark.
     for floor in
-        [Floor::Spiral { corridor: 1.0, wall: 0.2 }, Floor::CorridorTree { corridor: 1.0, pitch: 3.0 }]
+        [Floor::Spiral { corridor: 1.6, wall: 0.2 }, Floor::CorridorTree { corridor: 1.0, pitch: 3.0 }]
     {
         let world = world(floor, 2000);
         for motion in [Motion::Patrol {}, Motion::Sweep { lane: 0.5 }, Motion::Scatter {}] {
@@ -129,6 +129,19 @@ fn all_motions_but_way_points_come_past_every_part_of_a_corridor() {
             assert!(least >= 100, "{} {}: {least} of 600 on average", floor.name(), motion.name());
         }
     }
+}
+
+#[test]
+fn an_opening_as_wide_as_the_robot_is_no_doorway() {
+    // 1.1 - 1.0 is more than 0.1 by rounding: a passage of no length.
+    let left = Rect { min: [0.0, 0.0], max: [1.0, 1.1] };
+    let reached = |bottom: f64| {
+        let right = Rect { min: [1.0, bottom], max: [2.0, 2.0] };
+        Patches::new(&FloorPlan::new(vec![left, right], Vec::new()), 0.05)
+    };
+    assert!(matches!(reached(1.0), Err(SimError::OutOfReach { cut_off: 1, patches: 2, .. })));
+    let passage = reached(0.9).unwrap().doorways(0)[0].passage;
+    assert!((passage.length() - 0.1).abs() < 1e-12, "{passage:?}");
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub enum Floor {
     },
     /// One corridor that winds outwards around its inner end.
     Spiral {
-        /// Width of the corridor; default 1.
+        /// Width of the corridor; default 1.6: about three ranges of the sensor.
         corridor: f64,
         /// Thickness of the wall between two turns; default 0.2.
         wall: f64,
@@ -63,7 +63,7 @@ impl Floor {
         Self::Ring {},
         Self::Horseshoe {},
         Self::Blocks { street: 1.0, building: 2.0 },
-        Self::Spiral { corridor: 1.0, wall: 0.2 },
+        Self::Spiral { corridor: 1.6, wall: 0.2 },
         Self::Office { room: 3.0, door: 0.9, missing_doors: 0.1 },
         Self::TwoRooms { door: 0.9 },
         Self::CorridorTree { corridor: 1.0, pitch: 3.0 },

@@ -31,7 +31,7 @@ pub struct Options {
     /// Blocks: side of a building [default: 2]
     #[arg(long, value_name = "M")]
     building: Option<f64>,
-    /// Spiral, corridor-tree: width of a corridor [default: 1]
+    /// Spiral, corridor-tree: width of a corridor [default: 1.6 in a spiral, 1 in a tree]
     #[arg(long, value_name = "M")]
     corridor: Option<f64>,
     /// Spiral: thickness of the wall between two turns [default: 0.2]

@@ -5,7 +5,7 @@ use super::*;
 use crate::places::grid::{Cells, Cutting};
 use crate::places::sensor::Sensor;
 
-const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9 };
+const SENSOR: Sensor = Sensor { range: 0.6, edge: 0.05, detectability: 0.9, false_sighting: 1e-3 };
 /// A fifth of the range.
 const SPACING: f64 = 0.12;
 

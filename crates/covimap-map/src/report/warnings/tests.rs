@@ -3,14 +3,22 @@ use crate::SightingLog;
 use crate::fixtures::counts_of;
 
 fn component(landmarks: u64, converged: bool) -> ComponentReport {
-    ComponentReport { landmarks, regions: 1, pairs: 1, stress1: 0.1, iterations: 1, converged }
+    ComponentReport {
+        landmarks,
+        regions: 1,
+        pairs: 1,
+        stress1: 0.1,
+        iterations: 1,
+        converged,
+        distances: None,
+    }
 }
 
 /// Kind, count and examples of the warnings about a log.
 fn about(steps: &[&[&str]], components: &[ComponentReport]) -> Vec<(String, u64, Vec<String>)> {
     let log = SightingLog::from_steps(steps.iter().map(|step| step.iter().copied()));
     let counts = counts_of(&log);
-    warnings(&counts, &LinkGraph::from_counts(&counts), components, log.names())
+    warnings(&counts, &LinkGraph::from_counts(&counts), HonestyReport::default(), components, log.names())
         .into_iter()
         .map(|warning| (warning.kind, warning.count, warning.examples))
         .collect()
@@ -88,4 +96,20 @@ fn ten_examples_are_named_and_the_rest_counted() {
     let found = about(&[&steps[..], &SOUND].concat(), &[component(5, true)]);
     let named: Vec<&str> = ids[..10].iter().map(String::as_str).collect();
     assert_eq!(found, [warning("never_together", 25, &named)]);
+}
+
+#[test]
+fn misrecognition_is_told_where_it_is_notable() {
+    let log = SightingLog::from_steps(SOUND.iter().map(|step| step.iter().copied()));
+    let counts = counts_of(&log);
+    let found = |misrecognition, set_aside| {
+        let honesty = HonestyReport { set_aside, misrecognition };
+        warnings(&counts, &LinkGraph::from_counts(&counts), honesty, &[component(5, true)], log.names())
+    };
+    let warning = &found(Some(0.0213), 412)[0];
+    assert_eq!((warning.kind.as_str(), warning.count, warning.examples.len()), ("misrecognition", 412, 0));
+    assert!(warning.message.contains("about 2.1 % of the sightings"), "{}", warning.message);
+    for silent in [found(None, 0), found(Some(0.0), 0), found(Some(0.0019), 12)] {
+        assert_eq!(silent, []);
+    }
 }
