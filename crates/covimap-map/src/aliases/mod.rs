@@ -18,6 +18,7 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
+use crate::report::aliases_warning;
 use crate::{CoVisibility, LandmarkId, SightingLog, Warning};
 
 /// Steps that must show two landmarks together: what is seen less often may be chance.
@@ -120,15 +121,7 @@ impl Sightings<'_> {
 
 /// Says what was found.
 pub(crate) fn warning(log: &SightingLog, aliases: &[Alias]) -> Warning {
-    let name = |alias: &Alias| log.names().name(alias.landmark).to_owned();
-    Warning {
-        kind: "aliases".to_owned(),
-        count: aliases.len() as u64,
-        examples: aliases.iter().take(10).map(name).collect(),
-        message: "IDs that are seen in places far from each other; each place has a landmark of its own on the map, \
-                  such as A#1 and A#2"
-            .to_owned(),
-    }
+    aliases_warning(aliases.iter().map(|alias| log.names().name(alias.landmark)))
 }
 
 /// The log with a name of its own for every copy.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::DistanceReport;
 pub use seams::{Hinge, SeamReport, SeamsReport};
-pub(crate) use warnings::warnings;
+pub(crate) use warnings::{aliases_warning, warnings};
 
 use crate::HonestyReport;
 

@@ -88,6 +88,22 @@ pub(crate) fn warnings(
     warnings
 }
 
+/// The warning about IDs that were found in several places.
+pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>) -> Warning {
+    let count = ids.len() as u64;
+    let warn = |kind: &str, message: &str| Warning {
+        kind: kind.to_owned(),
+        count,
+        examples: ids.take(EXAMPLES).map(str::to_owned).collect(),
+        message: message.to_owned(),
+    };
+    warn(
+        "aliases",
+        "IDs that are seen in places far from each other; each place has a landmark of its own on the map, such as \
+         A#1 and A#2",
+    )
+}
+
 fn warnings_without_ids(
     honesty: HonestyReport,
     components: &[ComponentReport],
