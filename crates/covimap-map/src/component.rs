@@ -9,8 +9,11 @@ use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
     AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport,
-    Stage, local_map,
+    Stage, StopParams, local_map,
 };
+
+/// Tolerance of the polish between two rounds of learning distances, which move by more.
+const ALTERNATING: f64 = 1e-4;
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -107,14 +110,16 @@ pub(crate) fn settle(
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = graph.to_pairs();
     let start = shape.start(&pairs, start)?;
-    let polished = polish(&*shape.terms(&pairs)?, &start, params, observer)?;
+    let polished = polish(&*shape.terms(&pairs)?, &start, params.polish_stop, observer)?;
     observer.finished(Stage::Polish);
 
     begin(Stage::Distances, None, observer)?;
     let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
     let mut polished = Alternated::fixed(polished, pairs);
     if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
-        let polish = |pairs: &_, start: &_| polish(pairs, start, params, observer);
+        let tolerance = params.polish_stop.tolerance.max(ALTERNATING);
+        let stop = StopParams { tolerance, ..params.polish_stop };
+        let polish = |pairs: &_, start: &_| polish(pairs, start, stop, observer);
         polished = distances.alternate(polished, params.distance, polish)?;
     }
     observer.finished(Stage::Distances);
@@ -152,10 +157,10 @@ fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<()
 fn polish(
     pairs: &PairDistances,
     start: &[Point],
-    params: &AutoParams,
+    stop: StopParams,
     observer: &dyn Observer,
 ) -> Result<Embedding, MapError> {
-    let polished = newton_while(pairs, start, params.polish_stop.rule(), || {
+    let polished = newton_while(pairs, start, stop.rule(), || {
         observer.advanced(1);
         !observer.interrupted()
     })?;

@@ -52,10 +52,15 @@ impl Mapper {
         if aliases.is_empty() {
             return self.build_counted(log, counts, None, observer);
         }
-        let split = aliases::split(log, &aliases);
-        let counts = CoVisibility::count(&split, observer)?;
-        let mut map = self.build_counted(&split, counts, None, observer)?;
-        map.report.warnings.insert(0, aliases::warning(log, &aliases));
+        let split = self.params.auto.split_aliases;
+        let mut map = if split {
+            let log = aliases::split(log, &aliases);
+            let counts = CoVisibility::count(&log, observer)?;
+            self.build_counted(&log, counts, None, observer)?
+        } else {
+            self.build_counted(log, counts, None, observer)?
+        };
+        map.report.warnings.insert(0, aliases::warning(log, &aliases, split));
         Ok(map)
     }
 

@@ -116,6 +116,9 @@ pub struct AutoParams {
     pub polish_stop: StopParams,
     /// Distance function. Default `auto`.
     pub distance: DistanceChoice,
+    /// Whether an ID that is seen in several places becomes as many landmarks, `A#1`, `A#2` and so on. Default
+    /// no: it is only told. A robot that comes to a place by two ways now and then looks like two places.
+    pub split_aliases: bool,
     /// Most iterations of the refinement by the likelihood of the log. Default 4: more gain little,
     /// and the model of the sensor is never quite true; 0 leaves the configuration of least stress.
     pub refine_iterations: usize,
@@ -128,6 +131,7 @@ impl Default for AutoParams {
             local_stop: StopParams { max_iterations: 100, tolerance: 1e-5 },
             polish_stop: StopParams { max_iterations: 40, tolerance: 1e-6 },
             distance: DistanceChoice::Auto,
+            split_aliases: false,
             refine_iterations: 4,
         }
     }

@@ -47,6 +47,9 @@ struct Settings {
     /// Auto only: distance function, fitted to the log [default: auto, the family that foretells it best]
     #[arg(long, value_enum, value_name = "FAMILY")]
     distance: Option<DistanceName>,
+    /// Auto only: make an ID that is seen in several places as many landmarks, A#1, A#2 and so on
+    #[arg(long)]
+    split_aliases: bool,
     /// Classical only: distance function [default: phi2]
     #[arg(long, value_enum, value_name = "PHI")]
     phi: Option<PhiName>,
@@ -178,6 +181,7 @@ impl Settings {
         if params.method != Method::Auto && self.distance.is_some() {
             return Err(conflict("--distance is a setting of --method auto; leave one of the two out"));
         }
+        params.auto.split_aliases = self.split_aliases;
         params.auto.distance = self.distance.map_or(params.auto.distance, DistanceChoice::from);
         let classical = &mut params.classical;
         classical.alpha = self.alpha;

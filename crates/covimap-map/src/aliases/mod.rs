@@ -9,7 +9,7 @@
 //! Misread IDs do not look like that: they are scattered, and no company of theirs comes up again and again.
 //! Nor do two parts of a log that nothing but one ID joins: there nothing says that they lie apart.
 //!
-//! Every bundle becomes a landmark of its own, `A#1`, `A#2` and so on, the one with most sightings first;
+//! Where the caller asks for it, every bundle becomes a landmark of its own, `A#1`, `A#2` and so on, the one with most sightings first;
 //! every sighting goes to the bundle of which its step shows most.
 //!
 //! # Complexity
@@ -120,8 +120,8 @@ impl Sightings<'_> {
 }
 
 /// Says what was found.
-pub(crate) fn warning(log: &SightingLog, aliases: &[Alias]) -> Warning {
-    aliases_warning(aliases.iter().map(|alias| log.names().name(alias.landmark)))
+pub(crate) fn warning(log: &SightingLog, aliases: &[Alias], split: bool) -> Warning {
+    aliases_warning(aliases.iter().map(|alias| log.names().name(alias.landmark)), split)
 }
 
 /// The log with a name of its own for every copy.

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::{ComponentReport, DistanceReport, FamilyScore, HonestyReport, Method, ShepardRow, Warning};
 
-const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"distance":"auto","local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150}},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
+const SMALL: &str = r#"{"format":1,"generator":"covimap 0.1.0","method":"classical","seed":7,"settings":{"auto":{"distance":"auto","local_stop":{"max_iterations":100,"tolerance":0.00001},"polish_stop":{"max_iterations":40,"tolerance":1e-6},"refine_iterations":4,"regions":{"core":12,"halo_links":3,"members":150},"split_aliases":false},"classical":{"alpha":null,"hi":2.0,"lo":0.1,"phi":"phi2","tic":true}},"landmarks":[
 {"id":"A","x":0.1,"y":-2.0,"component":0,"region":0,"sightings":3,"partners":1,"links":[[1,2]],"branch":0,"loose":false},
 {"id":"say \"B\"","x":1e-7,"y":-0.0,"component":0,"region":1,"sightings":2,"partners":1,"branch":0,"loose":false}
 ],"report":{"steps":4,"sightings":5,"landmarks":2,"pairs":1,"honesty":{"set_aside":0,"misrecognition":null},"regions":2,"stress1":0.25,"components":[],"warnings":[]}}

@@ -46,6 +46,7 @@ fn the_least_settings_that_are_allowed_make_a_map() {
         local_stop: stop,
         polish_stop: stop,
         distance: DistanceChoice::FixedLog,
+        split_aliases: true,
         refine_iterations: 0,
     };
     assert!(build(params).landmarks().iter().all(|landmark| landmark.position[0].is_finite()));

@@ -30,7 +30,7 @@ impl RegionCover {
     /// Covers a connected graph. A graph of at most `sizes.members` landmarks is one region.
     pub(crate) fn new(graph: &LinkGraph, sizes: RegionParams) -> Self {
         let n = graph.landmarks();
-        let core_of = if n <= sizes.members { vec![0; n] } else { cores::cut(graph, sizes) };
+        let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes) };
         let regions = halo::add(graph, &core_of, sizes);
         let cover = Self { regions, core_of };
         #[cfg(test)]

@@ -88,8 +88,8 @@ pub(crate) fn warnings(
     warnings
 }
 
-/// The warning about IDs that were found in several places.
-pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>) -> Warning {
+/// The warning about IDs that were found in several places, and split into as many landmarks or not.
+pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>, split: bool) -> Warning {
     let count = ids.len() as u64;
     let warn = |kind: &str, message: &str| Warning {
         kind: kind.to_owned(),
@@ -99,8 +99,13 @@ pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>) -
     };
     warn(
         "aliases",
-        "IDs that are seen in places far from each other; each place has a landmark of its own on the map, such as \
-         A#1 and A#2",
+        if split {
+            "IDs that are seen in places far from each other; each place has a landmark of its own on the map, such \
+             as A#1 and A#2"
+        } else {
+            "IDs that seem to be seen in places far from each other; if several things bear them, build with \
+             split_aliases (--split-aliases) to give each place a landmark of its own"
+        },
     )
 }
 
