@@ -36,7 +36,7 @@ fn take_the_tour(scratch: &Scratch) -> usize {
 #[test]
 fn the_tour_can_be_taken_and_its_numbers_are_right() {
     let scratch = Scratch::new();
-    assert_eq!(take_the_tour(&scratch), 14);
+    assert_eq!(take_the_tour(&scratch), 15);
     let truth = data("mrclam-1.truth.csv");
     let errors = |map: &str| {
         let found = scratch.succeeds(&["evaluate", map, truth.to_str().unwrap(), "--json"]).json();

@@ -96,11 +96,12 @@ fn every_sighting_goes_to_the_copy_whose_company_is_there() {
 #[test]
 fn a_map_of_aliased_ids_is_as_good_as_one_without() {
     let looks = aliased(3);
-    let build = |method| {
-        let params = MapperParams { method, ..MapperParams::default() };
+    let build = |method, split_aliases| {
+        let mut params = MapperParams { method, ..MapperParams::default() };
+        params.auto.split_aliases = split_aliases;
         Mapper::new(params).unwrap().build(&names(&looks), &Silent).unwrap()
     };
-    let map = build(Method::Auto);
+    let map = build(Method::Auto, true);
     // 240 places, of which three pairs have one ID.
     assert_eq!(map.len(), 240);
     let warning = map.report().warnings.iter().find(|warning| warning.kind == "aliases").unwrap();
@@ -113,6 +114,9 @@ fn a_map_of_aliased_ids_is_as_good_as_one_without() {
     let [a, b] = [place(format!("{name}#1")), place(format!("{name}#2"))];
     // They are several ranges apart, as their ends of the hall are.
     assert!((a[0] - b[0]).hypot(a[1] - b[1]) > 4.0 * map.sensing().unwrap().sensor(0).range);
-    // The paper's method takes IDs for landmarks.
-    assert_eq!(build(Method::Classical).len(), 237);
+    // Unless asked for, IDs are told and left as they are; the paper's method takes IDs for landmarks.
+    let whole = build(Method::Auto, false);
+    let told = whole.report().warnings.iter().find(|warning| warning.kind == "aliases").unwrap();
+    assert_eq!((whole.len(), told.count), (237, 3));
+    assert_eq!(build(Method::Classical, true).len(), 237);
 }
