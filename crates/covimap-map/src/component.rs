@@ -12,8 +12,9 @@ use crate::{
     Stage, StopParams, local_map,
 };
 
-/// Tolerance of the polish between two rounds of learning distances, which move by more.
-const ALTERNATING: f64 = 1e-4;
+/// How many times larger the tolerance of the polish is after a round of learning distances: the next round moves
+/// landmarks by more.
+const LOOSER: f64 = 100.0;
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -117,7 +118,7 @@ pub(crate) fn settle(
     let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
     let mut polished = Alternated::fixed(polished, pairs);
     if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
-        let tolerance = params.polish_stop.tolerance.max(ALTERNATING);
+        let tolerance = LOOSER * params.polish_stop.tolerance;
         let stop = StopParams { tolerance, ..params.polish_stop };
         let polish = |pairs: &_, start: &_| polish(pairs, start, stop, observer);
         polished = distances.alternate(polished, params.distance, polish)?;

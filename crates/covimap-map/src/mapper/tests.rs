@@ -62,11 +62,10 @@ fn logs_that_make_no_map() {
 
 #[test]
 fn two_landmarks_are_one_distance_apart() {
-    // n = 2 and 1, together once: f = 1.5 / (2 + 1 - 1 + 1) = 1/2, and discs of diameter 1.2 that have
-    // half of what they cover in common are 1.2 * 0.264932 apart.
+    // n = 2 and 1, together once: f = 1.5 / (2 + 1 - 1 + 1) = 1/2, d = sqrt(0.3 ln 2) = 0.4560090.
     let map = map_of(&[&["A", "B"], &["A"]]);
-    assert!((position(&map, "A")[0] - 0.6 * 0.264_932).abs() < 2e-6);
-    assert!((position(&map, "B")[0] + 0.6 * 0.264_932).abs() < 2e-6);
+    assert!((position(&map, "A")[0] - 0.456_009_0 / 2.0).abs() < 1e-7);
+    assert!((position(&map, "B")[0] + 0.456_009_0 / 2.0).abs() < 1e-7);
     // Always together is no contradiction for two.
     let map = map_of(&[&["A", "B"]]);
     assert!(distance(position(&map, "A"), position(&map, "B")) > 0.1);
