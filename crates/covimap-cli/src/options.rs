@@ -4,11 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::Context;
-use clap::{CommandFactory, ValueEnum, error::ErrorKind};
+use clap::{ValueEnum, error::ErrorKind};
 use covimap_map::{GlobalMap, LogFormat};
 use covimap_plan::MapIndex;
-
-use crate::commands::Cli;
 
 /// More threads than any machine that this runs on has cores.
 const MOST_THREADS: usize = 1024;
@@ -132,9 +130,9 @@ impl From<FormatName> for LogFormat {
     }
 }
 
-/// Options that make no sense together; exit code 2.
+/// Options that make no sense together; exit code 2. The command line that is run adds how it is used.
 pub fn conflict(what: impl std::fmt::Display) -> anyhow::Error {
-    Cli::command().error(ErrorKind::ArgumentConflict, what).into()
+    clap::Error::raw(ErrorKind::ArgumentConflict, what).into()
 }
 
 #[cfg(test)]

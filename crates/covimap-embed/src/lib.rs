@@ -17,6 +17,7 @@ mod flexibility;
 mod forces;
 mod isotonic;
 mod laplacian;
+mod limited_memory;
 mod majorise;
 mod newton;
 mod nnls;

@@ -12,7 +12,7 @@
 //! With noisy distances the dropped terms nearly cancel those kept, so that `M` is too stiff for
 //! just the slow bends that are to be taken out: a step falls short by a factor of five or more.
 //! Steps along `-M^-1 g` are therefore only the first approximation. What the last few steps did
-//! to the gradient corrects it (the limited-memory BFGS recursion over `M^-1`, [`memory`]), and
+//! to the gradient corrects it (the limited-memory BFGS recursion over `M^-1`), and
 //! `M` itself is factored anew only when the configuration has moved far or the steps gain
 //! nothing any more: a factor serves some twenty steps, each of which costs one solve.
 //!
@@ -21,16 +21,14 @@
 //! found once. A step is a solve and a few looks at the stress.
 //!
 //! # References
-//! J. Nocedal, "Updating quasi-Newton matrices with limited storage", Math. Comp. 35, 1980;
 //! J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., 2006, algorithms 7.4 and 3.1.
 
-mod memory;
 mod normal_equations;
 
+use crate::limited_memory::{Memory, dot};
 use crate::solve::{check_start, negligible_stress};
 use crate::stress::raw_stress;
 use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
-use memory::{Memory, dot};
 pub(crate) use normal_equations::NormalEquations;
 
 /// Damping of the first factor; each later one has a tenth of the last.
@@ -155,7 +153,7 @@ impl Model {
 
     fn direction(&self, here: &Configuration) -> Vec<f64> {
         let downhill = here.gradient.iter().map(|g| -g).collect();
-        self.memory.apply(downhill, |v| self.system.solve(v))
+        self.memory.apply(downhill, |v, _| self.system.solve(v))
     }
 
     fn learn(&mut self, step: Vec<f64>, before: &Configuration, after: &Configuration) {

@@ -1,7 +1,15 @@
-//! A run kept in memory.
+//! Observations, one by one and all of a run in memory.
 
 use crate::geometry::Pose;
-use crate::simulation::Step;
+
+/// One observation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step<'s> {
+    /// Where the robot truly was.
+    pub pose: Pose,
+    /// Numbers of the landmarks seen, ascending, each once.
+    pub seen: &'s [u32],
+}
 
 /// All observations of a run, in order.
 #[derive(Debug, Clone, Default, PartialEq)]

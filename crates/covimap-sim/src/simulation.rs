@@ -1,22 +1,12 @@
 //! The loop: a pose, what is seen from it, and on to the next.
 
 use crate::error::SimError;
-use crate::geometry::Pose;
 use crate::motion::Journey;
-use crate::recording::Recording;
+use crate::recording::{Recording, Step};
 use crate::sensor::Observer;
 use crate::spec::RunSpec;
 use crate::tally::{Summary, Tally};
 use crate::world::World;
-
-/// One observation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step<'s> {
-    /// Where the robot truly was.
-    pub pose: Pose,
-    /// Numbers of the landmarks seen, ascending, each once.
-    pub seen: &'s [u32],
-}
 
 /// A run through a world, one step at a time; memory does not grow with the number of steps.
 ///

@@ -15,7 +15,7 @@ mod reproduce;
 mod route;
 mod simulate;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::console::Console;
 
@@ -66,6 +66,14 @@ impl Cli {
     /// # Errors
     /// Whatever ends the command before its result is out; `exit` tells what they come to.
     pub fn run(self) -> anyhow::Result<()> {
+        // Usage errors that a command finds itself do not know the command line yet.
+        self.dispatch().map_err(|error| match error.downcast::<clap::Error>() {
+            Ok(usage) => usage.format(&mut Self::command()).into(),
+            Err(other) => other,
+        })
+    }
+
+    fn dispatch(self) -> anyhow::Result<()> {
         let console = Console { quiet: self.quiet };
         match self.command {
             Command::Build(args) => args.run(console),

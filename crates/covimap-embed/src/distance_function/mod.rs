@@ -41,13 +41,14 @@
 //! J. O. Ramsay, "Monotone regression splines in action", Statistical Science 3(4), 1988.
 
 mod fit;
+mod observation;
 mod scoring;
 mod shapes;
 mod table;
 
 use serde::{Deserialize, Serialize};
 
-pub use fit::Observation;
+pub use observation::Observation;
 pub use shapes::{InverseSquare, Lens, StretchedExponential};
 pub use table::Tabulated;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::fit::expected;
+use super::observation::expected;
 use super::{DistanceFunction, Observation};
 
 /// Lengths tried as starts, each half again as long as the one before.

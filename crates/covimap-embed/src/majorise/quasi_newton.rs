@@ -13,31 +13,26 @@
 //!
 //! With disparities that are fitted, `sigma` is the least stress over all that are admitted, and
 //! its gradient that at the fitted ones.
-//!
-//! # References
-//! D. C. Liu, J. Nocedal, "On the limited memory BFGS method for large scale optimization",
-//! Mathematical Programming 45, 1989.
 
 use std::collections::VecDeque;
 
 use super::{State, moved};
 use crate::Point;
+use crate::limited_memory::{Memory, REMEMBERED, add, dot};
 
-/// Steps that are remembered.
-const MEMORY: usize = 8;
 /// Lengths that are tried before a plain step is taken.
 const TRIALS: usize = 4;
 /// Share of the promised gain that a step must keep.
 const KEPT: f64 = 1e-4;
 /// A shortened step is at least and at most this share of the one before.
 const SHORTENED: [f64; 2] = [0.1, 0.5];
-/// Pairs with less curvature than this share of `|s| |y|` are not remembered.
-const CURVED: f64 = 1e-10;
 
 /// The steps so far, and the state that the last one started from.
 #[derive(Default)]
 pub(super) struct QuasiNewton {
-    memory: VecDeque<Curvature>,
+    memory: Memory,
+    /// `V^+ y` of each step in the memory, the newest first.
+    scaled: VecDeque<Vec<Point>>,
     last: Option<Gradient>,
 }
 
@@ -46,16 +41,6 @@ struct Gradient {
     points: Vec<Point>,
     gradient: Vec<Point>,
     scaled: Vec<Point>,
-}
-
-/// One pair.
-struct Curvature {
-    s: Vec<Point>,
-    y: Vec<Point>,
-    /// `V^+ y`.
-    scaled: Vec<Point>,
-    /// `1 / s'y`.
-    rho: f64,
 }
 
 impl QuasiNewton {
@@ -70,7 +55,7 @@ impl QuasiNewton {
         self.learn(state, scaled);
         let direction = self.direction(&state.gradient, scaled)?;
         // The stress falls by twice this, per unit of length, at the start.
-        let slope = -dot(&state.gradient, &direction);
+        let slope = -dot(state.gradient.as_flattened(), direction.as_flattened());
         let mut length = 1.0;
         for _ in 0..TRIALS {
             let next = at(moved(&state.points, &direction, length));
@@ -84,6 +69,7 @@ impl QuasiNewton {
             length *= (0.5 * promised / (promised - gain)).clamp(least, most);
         }
         self.memory.clear();
+        self.scaled.clear();
         None
     }
 
@@ -97,47 +83,28 @@ impl QuasiNewton {
         if let Some(before) = self.last.replace(here) {
             let s = moved(&state.points, &before.points, -1.0);
             let y = moved(&state.gradient, &before.gradient, -1.0);
-            let scaled = moved(scaled, &before.scaled, -1.0);
-            let curvature = dot(&s, &y);
-            if curvature > CURVED * (dot(&s, &s) * dot(&y, &y)).sqrt() {
-                self.memory.truncate(MEMORY - 1);
-                self.memory.push_front(Curvature { s, y, scaled, rho: 1.0 / curvature });
+            if self.memory.remember(s.into_flattened(), y.into_flattened()) {
+                self.scaled.truncate(REMEMBERED - 1);
+                self.scaled.push_front(moved(scaled, &before.scaled, -1.0));
             }
         }
     }
 
-    /// `-H G` by the recursion of two loops; none without memory.
+    /// `-H G`; none without memory. What is left of `G` after the shares `a` of the changes has
+    /// `V^+ (G - sum a y) = V^+ G - sum a V^+ y`, and needs no solve.
     fn direction(&self, gradient: &[Point], scaled: &[Point]) -> Option<Vec<Point>> {
-        let newest = self.memory.front()?;
-        let gamma = 1.0 / (newest.rho * dot(&newest.y, &newest.scaled));
-        let mut gradient = gradient.to_vec();
-        let mut direction = scaled.to_vec();
-        let mut alphas = Vec::with_capacity(MEMORY);
-        for Curvature { s, y, scaled, rho } in &self.memory {
-            let alpha = rho * dot(s, &gradient);
-            add(&mut gradient, y, -alpha);
-            add(&mut direction, scaled, -alpha);
-            alphas.push(alpha);
-        }
-        direction.iter_mut().flatten().for_each(|x| *x *= gamma);
-        for (Curvature { s, y, rho, .. }, alpha) in self.memory.iter().zip(alphas).rev() {
-            let beta = rho * dot(y, &direction);
-            add(&mut direction, s, alpha - beta);
-        }
-        direction.iter_mut().flatten().for_each(|x| *x = -*x);
-        Some(direction)
+        let newest = self.scaled.front()?;
+        let (change, inverse_curvature) = self.memory.newest()?;
+        let gamma = 1.0 / (inverse_curvature * dot(change, newest.as_flattened()));
+        let towards = self.memory.apply(gradient.as_flattened().to_vec(), |left, shares| {
+            left.copy_from_slice(scaled.as_flattened());
+            for (share, scaled) in shares.iter().zip(&self.scaled) {
+                add(left, -share, scaled.as_flattened());
+            }
+            left.iter_mut().for_each(|x| *x *= gamma);
+        });
+        Some(towards.as_chunks().0.iter().map(|&[x, y]| [-x, -y]).collect())
     }
-}
-
-fn add(sum: &mut [Point], step: &[Point], factor: f64) {
-    for (sum, step) in sum.iter_mut().zip(step) {
-        *sum = [sum[0] + factor * step[0], sum[1] + factor * step[1]];
-    }
-}
-
-fn dot(a: &[Point], b: &[Point]) -> f64 {
-    let sum = a.iter().zip(b).fold([0.0; 2], |sum, (a, b)| [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]);
-    sum[0] + sum[1]
 }
 
 #[cfg(test)]
@@ -151,7 +118,12 @@ mod tests {
         let curvature = |k: usize, axis: usize| (2 * k + axis + 1) as f64;
         let at = |k: usize, p: &Point| [curvature(k, 0) * p[0], curvature(k, 1) * p[1]];
         let gradient: Vec<Point> = points.iter().enumerate().map(|(k, p)| at(k, p)).collect();
-        State { stress: dot(&points, &gradient), points, gradient, disparities: Rc::new(vec![]) }
+        State {
+            stress: dot(points.as_flattened(), gradient.as_flattened()),
+            points,
+            gradient,
+            disparities: Rc::new(vec![]),
+        }
     }
 
     /// With `V = 5`.
@@ -164,7 +136,7 @@ mod tests {
         let start = bowl(vec![[1.0, 1.0], [1.0, -1.0]]);
         let mut steps = QuasiNewton::default();
         assert!(steps.step(&start, &scaled(&start.gradient), bowl).is_none());
-        assert!(steps.memory.is_empty());
+        assert!(steps.memory.newest().is_none());
     }
 
     #[test]
@@ -175,10 +147,12 @@ mod tests {
             let state = bowl(points.to_vec());
             steps.learn(&state, &scaled(&state.gradient));
         }
-        assert_eq!(steps.memory.len(), 2);
-        let newest = &steps.memory[0];
-        let direction = steps.direction(&newest.y, &newest.scaled).unwrap();
-        for (found, s) in direction.iter().flatten().zip(newest.s.iter().flatten()) {
+        assert_eq!(steps.scaled.len(), 2);
+        // From (2, .5), (0, -1.5) to (1, .25), (-.5, .5); the gradient of the bowl is 1, 2, 3, 4 times as much.
+        let s = [-1.0, -0.25, -0.5, 2.0];
+        let y = [[-1.0, -0.5], [-1.5, 8.0]];
+        let direction = steps.direction(&y, &scaled(&y)).unwrap();
+        for (found, s) in direction.iter().flatten().zip(s) {
             assert!((found + s).abs() < 1e-12, "{found} for {}", -s);
         }
     }
@@ -207,7 +181,8 @@ mod tests {
             State { stress: 1e9, ..bowl(points) }
         };
         assert!(steps.step(&second, &scaled(&second.gradient), worse).is_none());
-        assert_eq!((tried.get(), steps.memory.len()), (TRIALS, 0));
+        assert_eq!(tried.get(), TRIALS);
+        assert!(steps.memory.newest().is_none() && steps.scaled.is_empty());
     }
 
     #[test]
@@ -218,6 +193,6 @@ mod tests {
         let second = State { gradient: vec![[5.0, 5.0]], ..bowl(vec![[0.5, 0.5]]) };
         steps.learn(&first, &scaled(&first.gradient));
         steps.learn(&second, &scaled(&second.gradient));
-        assert!(steps.memory.is_empty());
+        assert!(steps.memory.newest().is_none());
     }
 }

@@ -191,14 +191,7 @@ impl Clusters {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn turned(angle: f64, mirrored: bool) -> Orientation {
-        Orientation { rotation: Complex::from_polar(1.0, angle), mirrored }
-    }
-
-    fn close(a: Orientation, b: Orientation) -> bool {
-        a.mirrored == b.mirrored && (a.rotation - b.rotation).norm() < 1e-12
-    }
+    use crate::synchronise::orientation::fixtures::{close, turned};
 
     #[test]
     fn tallies_turn_and_reverse_as_the_orientations_they_stand_for() {

@@ -39,3 +39,17 @@ impl Vote {
         nodes[self.a as usize].after(self.a_from_b).after(nodes[self.b as usize].inverse())
     }
 }
+
+/// For the tests of those who orient things.
+#[cfg(test)]
+pub(super) mod fixtures {
+    use super::*;
+
+    pub fn turned(angle: f64, mirrored: bool) -> Orientation {
+        Orientation { rotation: Complex::from_polar(1.0, angle), mirrored }
+    }
+
+    pub fn close(a: Orientation, b: Orientation) -> bool {
+        a.mirrored == b.mirrored && (a.rotation - b.rotation).norm() < 1e-12
+    }
+}

@@ -109,15 +109,7 @@ fn agreement(votes: &[Vote], nodes: &[Orientation]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Complex;
-
-    fn turned(angle: f64, mirrored: bool) -> Orientation {
-        Orientation { rotation: Complex::from_polar(1.0, angle), mirrored }
-    }
-
-    fn close(a: Orientation, b: Orientation) -> bool {
-        a.mirrored == b.mirrored && (a.rotation - b.rotation).norm() < 1e-12
-    }
+    use crate::synchronise::orientation::fixtures::{close, turned};
 
     #[test]
     fn agreeing_edges_outvote_a_heavier_wrong_one() {

@@ -21,7 +21,7 @@
 //! # Algorithm
 //! Expectation-maximisation. The posterior of each step's place is taken on a [`grid`] around the
 //! landmarks seen ([`posterior`]); then every landmark makes one Fisher-scoring step in position
-//! and detectability ([`scoring`]), and `s` and `e` one in common ([`sensor`]). `R` is fitted first and
+//! and detectability ([`scoring`]), and `s` and `e` one in common ([`sensor_fit`]). `R` is fitted first and
 //! then held: it fixes the unit.
 //!
 //! # Complexity
@@ -42,6 +42,7 @@ mod observe;
 mod posterior;
 mod scoring;
 mod sensor;
+mod sensor_fit;
 mod sets;
 
 use std::sync::Mutex;
@@ -53,8 +54,9 @@ use crate::{LinkGraph, MapError, Observer};
 pub(crate) use observe::observe;
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
+use sensor::FALSE_SIGHTING;
 pub(crate) use sensor::Sensor;
-use sensor::{FALSE_SIGHTING, SensorScores};
+use sensor_fit::SensorScores;
 pub(crate) use sets::SeenSets;
 
 /// Sets of one parallel task.

@@ -1,21 +1,8 @@
-//! The sensor that all landmarks share: range and edge, and how they are fitted.
-
-use super::grid::SPACING;
-use super::posterior::Step;
+//! The sensor that all landmarks share.
 
 /// Bounds of the probability `e` of a sighting that should not be. It starts at the lower one: walls
 /// and soft edges let even a faultless log look a little false.
 pub(super) const FALSE_SIGHTING: (f64, f64) = (1e-3, 0.2);
-/// Narrowest edge, as a share of the range: the grid of places resolves no finer.
-const NARROWEST: f64 = 0.03;
-/// Largest relative change of the range in one step.
-const RANGE_STEP: f64 = 0.1;
-/// Largest change of the edge's logarithm in one step.
-const EDGE_STEP: f64 = 0.3;
-/// Largest change of the common detectability in one step.
-const DETECTABILITY_STEP: f64 = 0.2;
-/// Largest change of the probability of a false sighting in one step.
-const FALSE_STEP: f64 = 0.02;
 /// Bounds of a detectability.
 pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
 
@@ -36,79 +23,5 @@ impl Sensor {
     /// The visibility curve `v(d) = 1 / (1 + exp((d - R) / s))`.
     pub(super) fn visibility(self, distance: f64) -> f64 {
         1.0 / (1.0 + ((distance - self.range) / self.edge).exp())
-    }
-}
-
-/// Score and information of the range, of the logarithm of the edge, of a change of all
-/// detectabilities and of the probability of a false sighting.
-///
-/// The derivatives of eq. (1) are `(p - e) v (1 - v) / s` by `R`, `(d - R)` times that by `ln s`, `v` by `p`
-/// and `1 - v` by `e`.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct SensorScores {
-    range: [f64; 2],
-    log_edge: [f64; 2],
-    detectability: [f64; 2],
-    false_sighting: [f64; 2],
-}
-
-impl SensorScores {
-    /// Adds `times` steps with the posterior of their place.
-    pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor) {
-        let spacing = SPACING * sensor.range;
-        for witness in step.witnesses {
-            let by_sight = f64::from(witness.detectability) - sensor.false_sighting;
-            for row in step.rows.clone() {
-                for (column, &weight) in step.places[row].iter().enumerate().filter(|place| *place.1 > 0.0) {
-                    let [x, y] = witness.cutting.offset.map(f64::from);
-                    let (dx, dy) = (x - column as f64, y - row as f64);
-                    let distance = (dx * dx + dy * dy).sqrt() * spacing;
-                    let v = sensor.visibility(distance);
-                    let p = sensor.false_sighting + by_sight * v;
-                    let information = times * f64::from(weight) / (p * (1.0 - p));
-                    let surprise = information * (f64::from(u8::from(witness.seen)) - p);
-                    let by_range = by_sight * v * (1.0 - v) / sensor.edge;
-                    let by_edge = by_range * (distance - sensor.range);
-                    self.range[0] += surprise * by_range;
-                    self.range[1] += information * by_range * by_range;
-                    self.log_edge[0] += surprise * by_edge;
-                    self.log_edge[1] += information * by_edge * by_edge;
-                    self.detectability[0] += surprise * v;
-                    self.detectability[1] += information * v * v;
-                    self.false_sighting[0] += surprise * (1.0 - v);
-                    self.false_sighting[1] += information * (1.0 - v) * (1.0 - v);
-                }
-            }
-        }
-    }
-
-    pub fn add(&mut self, other: &Self) {
-        for (sum, more) in [
-            (&mut self.range, other.range),
-            (&mut self.log_edge, other.log_edge),
-            (&mut self.detectability, other.detectability),
-            (&mut self.false_sighting, other.false_sighting),
-        ] {
-            sum[0] += more[0];
-            sum[1] += more[1];
-        }
-    }
-
-    /// The sensor after a Fisher-scoring step; the range only if it is free.
-    pub fn improve(&self, sensor: Sensor, range_free: bool) -> Sensor {
-        let step = |[score, information]: [f64; 2], most: f64| {
-            if information > 0.0 { (score / information).clamp(-most, most) } else { 0.0 }
-        };
-        let moved = if range_free { step(self.range, RANGE_STEP * sensor.range) } else { 0.0 };
-        let range = sensor.range + moved;
-        let edge = sensor.edge * step(self.log_edge, EDGE_STEP).exp();
-        let detectability = sensor.detectability + step(self.detectability, DETECTABILITY_STEP);
-        let false_sighting = sensor.false_sighting + step(self.false_sighting, FALSE_STEP);
-        Sensor {
-            range,
-            edge: edge.max(NARROWEST * range),
-            detectability: detectability.clamp(DETECTABILITY.0, DETECTABILITY.1),
-            false_sighting: false_sighting.clamp(FALSE_SIGHTING.0, FALSE_SIGHTING.1),
-        }
     }
 }

@@ -1,13 +1,20 @@
-//! What earlier steps tell of the curvature: the limited-memory BFGS recursion.
+//! What the last steps of a descent tell of the curvature: the limited-memory recursion of Broyden,
+//! Fletcher, Goldfarb and Shanno.
+//!
+//! # References
+//! D. C. Liu, J. Nocedal, "On the limited memory BFGS method for large scale optimization",
+//! Mathematical Programming 45, 1989.
 
 use std::collections::VecDeque;
 
 /// Steps that are remembered.
-const REMEMBERED: usize = 8;
+pub(crate) const REMEMBERED: usize = 8;
+/// Steps with less curvature than this share of `|step| |change|` are not remembered.
+const CURVED: f64 = 1e-10;
 
-/// The last steps, each with the change of the gradient that it brought.
+/// The last steps, each with the change of the gradient that it brought; the newest last.
 #[derive(Default)]
-pub(super) struct Memory {
+pub(crate) struct Memory {
     steps: VecDeque<Remembered>,
 }
 
@@ -23,28 +30,37 @@ impl Memory {
         self.steps.clear();
     }
 
-    /// Remembers a step. One along which the slope does not rise says nothing of a minimum and is
-    /// left out, so that the recursion stays positive definite.
-    pub fn remember(&mut self, step: Vec<f64>, change: Vec<f64>) {
+    /// Remembers a step, and forgets the oldest of too many. One along which the slope does not rise says
+    /// nothing of a minimum and is left out, so that the recursion stays positive definite. Tells whether it was
+    /// taken.
+    pub fn remember(&mut self, step: Vec<f64>, change: Vec<f64>) -> bool {
         let curvature = dot(&step, &change);
-        if curvature > 1e-10 * (dot(&step, &step) * dot(&change, &change)).sqrt() {
+        let taken = curvature > CURVED * (dot(&step, &step) * dot(&change, &change)).sqrt();
+        if taken {
             if self.steps.len() == REMEMBERED {
                 self.steps.pop_front();
             }
             self.steps.push_back(Remembered { step, change, inverse_curvature: 1.0 / curvature });
         }
+        taken
     }
 
-    /// `B v`, `B` being the inverse second derivative that the steps tell of, built upon `precondition`,
-    /// which replaces a vector by an approximation of the same.
-    pub fn apply(&self, mut v: Vec<f64>, precondition: impl FnOnce(&mut [f64])) -> Vec<f64> {
+    /// The change `y` of the gradient along the newest step, and `1 / step'y`.
+    pub fn newest(&self) -> Option<(&[f64], f64)> {
+        self.steps.back().map(|newest| (newest.change.as_slice(), newest.inverse_curvature))
+    }
+
+    /// `B v`, `B` being the inverse second derivative that the steps tell of, built upon an approximation of the
+    /// same. `precondition` replaces `v` less the shares of the changes, one a step with the newest first, by what that
+    /// approximation makes of it.
+    pub fn apply(&self, mut v: Vec<f64>, precondition: impl FnOnce(&mut [f64], &[f64])) -> Vec<f64> {
         let mut shares = Vec::with_capacity(self.steps.len());
         for past in self.steps.iter().rev() {
             let share = past.inverse_curvature * dot(&past.step, &v);
             add(&mut v, -share, &past.change);
             shares.push(share);
         }
-        precondition(&mut v);
+        precondition(&mut v, &shares);
         for (past, share) in self.steps.iter().zip(shares.into_iter().rev()) {
             let by = share - past.inverse_curvature * dot(&past.change, &v);
             add(&mut v, by, &past.step);
@@ -53,13 +69,16 @@ impl Memory {
     }
 }
 
-/// Inner product, in the order of the entries.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// Inner product, even and odd entries apart and each in order: two sums at a time.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.as_chunks::<2>(), b.as_chunks::<2>());
+    let sum = a.0.iter().zip(b.0).fold([0.0; 2], |sum, (a, b)| [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]);
+    let rest = a.1.iter().zip(b.1).map(|(a, b)| a * b).sum::<f64>();
+    sum[0] + sum[1] + rest
 }
 
 /// `a += factor b`.
-pub(super) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
+pub(crate) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
     for (a, b) in a.iter_mut().zip(b) {
         *a += factor * b;
     }
@@ -76,13 +95,15 @@ mod tests {
         MATRIX.iter().map(|row| dot(row, v)).collect()
     }
 
-    fn by_diagonal(v: &mut [f64]) {
+    fn by_diagonal(v: &mut [f64], _shares: &[f64]) {
         v.iter_mut().zip(MATRIX).enumerate().for_each(|(k, (v, row))| *v /= row[k]);
     }
 
     fn remembering(steps: &[[f64; 3]]) -> Memory {
         let mut memory = Memory::default();
-        steps.iter().for_each(|step| memory.remember(step.to_vec(), times(step)));
+        for step in steps {
+            assert!(memory.remember(step.to_vec(), times(step)));
+        }
         memory
     }
 
@@ -116,8 +137,8 @@ mod tests {
     #[test]
     fn steps_along_which_the_slope_falls_are_left_out() {
         let mut memory = Memory::default();
-        memory.remember(vec![1.0, 0.0, 0.0], vec![-1.0, 0.0, 0.0]);
-        memory.remember(vec![0.0; 3], vec![0.0; 3]);
+        assert!(!memory.remember(vec![1.0, 0.0, 0.0], vec![-1.0, 0.0, 0.0]));
+        assert!(!memory.remember(vec![0.0; 3], vec![0.0; 3]));
         assert!(memory.steps.is_empty());
         for k in 0..2 * REMEMBERED {
             memory.remember(vec![1.0, k as f64, 0.0], vec![1.0, k as f64, 0.0]);
