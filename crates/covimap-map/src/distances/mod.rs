@@ -29,6 +29,7 @@
 
 mod choice;
 mod counts;
+mod learnt;
 mod shepard;
 mod steps;
 mod weights;
@@ -45,7 +46,10 @@ use crate::params::DistanceChoice;
 use crate::{CoVisibility, LinkGraph, MapError};
 pub use choice::FamilyScore;
 use choice::choose;
-use counts::{PairCount, Sample};
+pub(crate) use counts::PairCount;
+use counts::Sample;
+pub(crate) use learnt::Learnt;
+use learnt::Measured;
 pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
@@ -89,6 +93,7 @@ pub(crate) struct Distances<'a> {
 
 /// A curve in use.
 struct Fit {
+    learnt: Learnt,
     curve: DistanceCurve,
     scores: Vec<FamilyScore>,
     misfit: f64,
@@ -154,17 +159,19 @@ impl<'a> Distances<'a> {
         let points = &present.embedding.points;
         let trust = Trust::learn(&curve, self.repetition, &self.sampled(points));
         let stretch = self.stretch(&curve);
+        let learnt = Learnt { curve, stretch, trust };
         let measure = |(pair, count): (&Pair, &PairCount)| {
-            let (weight, kept) = trust.weight(&curve, *count, length(points, [pair.i, pair.j]));
-            let distance = stretch * curve.distance(count.frequency());
-            (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
+            let measured = learnt.measure(*count, length(points, [pair.i, pair.j]));
+            let Measured { distance, weight, kept } = measured;
+            (Pair { distance, weight, ..*pair }, kept < HALF)
         };
         let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
             present.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();
         let doubted = doubted.iter().filter(|doubted| **doubted).count() as f64 / pairs.len() as f64;
         let pairs = PairDistances::new(self.graph.landmarks(), pairs)
             .expect("distances of counts are finite and weights positive (bug in covimap)");
-        (pairs, Fit { curve: curve.scaled(stretch), scores, misfit: stretch * trust.misfit, doubted })
+        let (curve, misfit) = (learnt.curve.clone().scaled(stretch), stretch * learnt.trust.misfit);
+        (pairs, Fit { learnt, curve, scores, misfit, doubted })
     }
 
     /// Whether most links have a length under a curve. They have none where all frequencies are about equal.
@@ -222,6 +229,11 @@ impl Alternated {
     /// The map of the fixed logarithm.
     pub fn fixed(embedding: Embedding, pairs: PairDistances) -> Self {
         Self { embedding, pairs, fit: None }
+    }
+
+    /// What made the distances; `None` for the fixed logarithm.
+    pub fn learnt(&self) -> Option<Learnt> {
+        self.fit.as_ref().map(|fit| fit.learnt.clone())
     }
 }
 
