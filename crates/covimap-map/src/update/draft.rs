@@ -86,6 +86,13 @@ impl<'a> Draft<'a> {
         self.base[component as usize] == Some(chart) || self.carried.contains(&(component, chart))
     }
 
+    /// Whether a landmark is solved again: because it is free, or anew in a component without a base.
+    pub fn is_solved(&self, landmark: u32) -> bool {
+        let component = self.joined.component_of[landmark as usize];
+        let anew = self.base[component as usize].is_none() && self.joined.is_touched(landmark);
+        self.free[landmark as usize] || anew
+    }
+
     /// Landmarks of a component whose place a chart tells.
     fn of_chart(&self, component: u32, chart: u32) -> Vec<u32> {
         let members = &self.joined.components[component as usize];

@@ -137,7 +137,8 @@ impl<'a> Joined<'a> {
             return Ok(Err("half of the landmarks or more would have to move"));
         }
         refine::refine(self, &mut draft, observer)?;
-        report.solved = draft.free.iter().filter(|free| **free).count() as u64;
+        report.solved =
+            (0..self.landmarks() as u32).filter(|&landmark| draft.is_solved(landmark)).count() as u64;
         report.carried = draft.carried.len() as u64;
         draft.finish(observer).map(Ok)
     }
