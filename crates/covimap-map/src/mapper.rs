@@ -281,7 +281,7 @@ fn classical_component(
     Ok(ComponentMap {
         stress1: stress1(&pairs, &points),
         region: vec![0; members.len()],
-        basis: Basis { polished: points.clone(), learnt: None, sensor: None },
+        basis: Basis { polished: points.clone(), law: None, sensor: None },
         points,
         regions: 1,
         branch_of: vec![0],

@@ -229,13 +229,15 @@ pub(crate) fn learn_one(
     sets: &SeenSets,
     observer: &dyn Observer,
 ) -> Result<LearntSensor, MapError> {
-    let found = observe(graph, sets, points, observer)?;
+    let (found, warp) =
+        rayon::join(|| observe(graph, sets, points, observer), || warp::warp(counts, graph, members, points));
+    let found = found?;
     let sensor = SensorModel {
         range: found.sensor.range,
         edge: found.sensor.edge,
         detectability: found.sensor.detectability,
         outliers: found.outliers,
-        warp: warp::warp(counts, graph, members, points)?,
+        warp: warp?,
     };
     Ok(LearntSensor { sensor, detectability: found.detectability, deviation: found.deviation })
 }

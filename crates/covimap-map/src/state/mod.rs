@@ -10,7 +10,7 @@ use covimap_embed::Point;
 use serde::{Deserialize, Serialize};
 
 use crate::component::Basis;
-use crate::distances::Learnt;
+use crate::distances::Law;
 use crate::mapper::Built;
 use crate::places::Sensor;
 use crate::{CoVisibility, GlobalMap, MapError, Observer, SightingLog, UpdateReport, update};
@@ -61,7 +61,7 @@ pub(crate) struct Settled {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Rules {
     /// What turned counts into distances; `None` for the fixed logarithm.
-    pub learnt: Option<Learnt>,
+    pub law: Option<Law>,
     /// The sensor of the refinement; `None` where nothing was refined.
     pub sensor: Option<Sensor>,
 }
@@ -81,7 +81,7 @@ impl MapState {
             partners: placed.partners,
         };
         let settled = map.landmarks().iter().map(of_map).collect();
-        let rules = bases.into_iter().map(|Basis { learnt, sensor, .. }| Rules { learnt, sensor }).collect();
+        let rules = bases.into_iter().map(|Basis { law, sensor, .. }| Rules { law, sensor }).collect();
         let whole = log.sightings() as u64;
         Self { log, counts, map, ground: Ground { polished, settled, rules, whole } }
     }

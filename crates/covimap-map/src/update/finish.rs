@@ -55,7 +55,7 @@ impl Draft<'_> {
                     self.polished[member as usize] = basis.polished[place];
                     self.free[member as usize] = true;
                 }
-                rules.push(Rules { learnt: basis.learnt, sensor: basis.sensor });
+                rules.push(Rules { law: basis.law, sensor: basis.sensor });
                 sensors.extend(self.learn(members, &map.points, sets, &sensors, observer)?);
                 maps.push(map);
             }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::draft::{Draft, NOWHERE};
 use super::{Joined, MOST_FREE};
 use crate::component::begin;
-use crate::distances::{Learnt, PairCount};
+use crate::distances::{Law, PairCount};
 use crate::{Link, MapError, Observer, Stage};
 
 /// Times that landmarks are freed because of others, at most.
@@ -133,20 +133,20 @@ fn push(joined: &Joined, draft: &Draft, landmark: u32) -> f64 {
 impl Draft<'_> {
     /// Distance and weight of a link of a landmark, by the rules of its component.
     pub fn measure(&self, landmark: u32, link: &Link, count: PairCount) -> (f64, f64) {
-        match self.learnt(landmark) {
-            Some(learnt) => {
+        match self.law(landmark) {
+            Some(law) => {
                 let [a, b] = [landmark, link.to].map(|end| self.origin[end as usize]);
-                let measured = learnt.measure(count, (a[0] - b[0]).hypot(a[1] - b[1]));
-                (measured.distance, measured.weight)
+                let (distance, weight, _) = law.measure(count, (a[0] - b[0]).hypot(a[1] - b[1]));
+                (distance, weight)
             }
             None => (link.distance, link.weight),
         }
     }
 
-    fn learnt(&self, landmark: u32) -> Option<&Learnt> {
+    fn law(&self, landmark: u32) -> Option<&Law> {
         let component = self.joined.component_of[landmark as usize];
         let base = self.base[component as usize]?;
-        self.joined.old.ground.rules[base as usize].learnt.as_ref()
+        self.joined.old.ground.rules[base as usize].law.as_ref()
     }
 }
 
