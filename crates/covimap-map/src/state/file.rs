@@ -173,9 +173,9 @@ fn contents(rest: &mut Rest) -> Result<MapState, String> {
 }
 
 fn steps_of(mut rest: Rest, steps: usize, landmarks: usize) -> Result<(Vec<usize>, Vec<u32>), String> {
-    // No byte holds more than one number.
+    // Every number takes a byte at least. Memory that is never written to is not taken.
     let mut starts = Vec::with_capacity(steps.min(rest.0.len()) + 1);
-    let mut seen = Vec::with_capacity(rest.0.len() / 2);
+    let mut seen = Vec::with_capacity(rest.0.len());
     starts.push(0);
     for step in 0..steps {
         let mut last = 0;
