@@ -11,7 +11,7 @@
 //!    the polish has moved it.
 //!
 //! Distance function and sensor stay as they are; they are properties of the robot, not of a few steps. When
-//! half of the landmarks would be free, or a tenth of the evidence is newer than the last whole solution, everything
+//! half of the landmarks would be free, or a twelfth of the evidence is newer than the last whole solution, everything
 //! is solved again and the result laid onto the old map ([`whole`]).
 //!
 //! # Complexity
@@ -37,7 +37,7 @@ use draft::Draft;
 const FRESH: f64 = 0.1;
 /// Share of the evidence that may be newer than the last whole solution: what bends the map as a whole cannot be
 /// mended where only some landmarks move.
-const MOST_FRESH: f64 = 0.1;
+const MOST_FRESH: f64 = 1.0 / 12.0;
 /// Share of the landmarks that may be solved again among the others.
 const MOST_FREE: f64 = 0.5;
 
@@ -107,7 +107,7 @@ fn reason(old: &MapState, log: &SightingLog, counts: &CoVisibility) -> Option<&'
     } else if by_paths {
         Some("the lengths of paths along links hold the map open, and they change as a whole")
     } else if fresh >= MOST_FRESH * log.sightings() as f64 {
-        Some("a tenth of the evidence is newer than the last whole solution")
+        Some("a twelfth of the evidence is newer than the last whole solution")
     } else {
         None
     }
