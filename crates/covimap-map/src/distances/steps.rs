@@ -33,10 +33,10 @@ impl<'a> ComponentSteps<'a> {
     pub fn of_all(log: &'a SightingLog, membership: &'a Membership, components: usize) -> Vec<Self> {
         let mut steps = vec![Vec::new(); components];
         for (step, seen) in log.iter().enumerate() {
-            if let Some(&first) = seen.first() {
-                if let Some(steps) = steps.get_mut(membership.of[first as usize].0 as usize) {
-                    steps.push(step);
-                }
+            if let Some(&first) = seen.first()
+                && let Some(steps) = steps.get_mut(membership.of[first as usize].0 as usize)
+            {
+                steps.push(step);
             }
         }
         let of_one = |(component, steps)| Self { log, membership, component, steps };

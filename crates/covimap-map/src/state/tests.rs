@@ -47,10 +47,9 @@ fn a_state_comes_back_as_it_was_written() {
 }
 
 #[test]
-fn a_state_of_the_classical_method_and_one_with_split_ids() {
+fn a_state_of_the_classical_method() {
     let log = log_of(&looks(&scattered(20, [1.0, 1.0], 3), [1.0, 1.0], 0.5, 200));
-    let mut params = MapperParams::default();
-    params.method = Method::Classical;
+    let params = MapperParams { method: Method::Classical, ..MapperParams::default() };
     let state = Mapper::new(params).unwrap().build_with_state(log, &Silent).unwrap();
     assert_eq!(MapState::parse(&bytes(&state), "s").unwrap(), state);
 }

@@ -254,8 +254,7 @@ fn what_is_too_much_is_solved_as_a_whole_and_laid_onto_the_old_map() {
 #[test]
 fn settings_that_solve_everything_at_once_do_so_in_every_update() {
     let world = World::new(2.0, 2.0);
-    let mut params = MapperParams::default();
-    params.method = Method::Classical;
+    let params = MapperParams { method: Method::Classical, ..MapperParams::default() };
     let steps = world.steps([0.0, 2.0], 600);
     let mut state = Mapper::new(params).unwrap().build_with_state(log(&steps), &Silent).unwrap();
     let report = state.update(&log(&world.steps([0.0, 2.0], 6)), &Silent).unwrap();
