@@ -162,6 +162,42 @@ fn errors_of_recognition_cost_little() {
     }
 }
 
+/// A log that comes in pieces. Between two whole solutions a map keeps the bend that it had, so that its errors may
+/// be a little larger than those of a build of all.
+#[test]
+fn maps_after_updates_are_about_as_good_as_those_of_the_whole_log() {
+    for (floor, landmarks, seed) in
+        [(Floor::Hall {}, 300, 1), (BLOCKS, 400, 2), (OFFICE, 500, 3), (OFFICE, 300, 4)]
+    {
+        let run = Run::new(floor, landmarks, seed, "L");
+        let full = build(&run.log(), MapperParams::default());
+        let wanted = run.errors_of(&full);
+        // Worst: 1.026, 1.04, 1.06, 1.00, 1.01; all of them 1 where the last piece leads to a whole solution.
+        for (first, pieces) in [(0.5, 5), (0.93, 6)] {
+            let cut = (run.steps.len() as f64 * first) as usize;
+            let log = SightingLog::from_steps(&run.steps[..cut]);
+            let mapper = Mapper::new(MapperParams::default()).unwrap();
+            let mut state = mapper.build_with_state(log, &Silent).unwrap();
+            for piece in run.steps[cut..].chunks((run.steps.len() - cut).div_ceil(pieces)) {
+                let report = state.update(&SightingLog::from_steps(piece), &Silent).unwrap();
+                assert!(first < 0.9 || report.whole.is_none(), "{report:?}");
+            }
+            let found = run.errors_of(state.map());
+            let world = format!("{} of {landmarks}, seed {seed}, {pieces} pieces", floor.name());
+            let ratios = [
+                state.map().report().stress1 / full.report().stress1,
+                found.local_orientation_error.unwrap() / wanted.local_orientation_error.unwrap(),
+                found.delaunay_error / wanted.delaunay_error,
+                found.orientation_error.unwrap() / wanted.orientation_error.unwrap(),
+                found.rmse / wanted.rmse,
+            ];
+            for (ratio, bound) in ratios.into_iter().zip([1.035, 1.08, 1.1, 1.1, 1.1]) {
+                assert!(ratio < bound, "{world}: {ratios:.3?}");
+            }
+        }
+    }
+}
+
 /// A hall and an office that share no sighting, looked at by turns.
 fn two_islands() -> Run {
     let (mut hall, office) = (Run::new(Floor::Hall {}, 300, 1, "H"), Run::new(OFFICE, 400, 2, "O"));

@@ -95,6 +95,8 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::MapFormat { .. }
             | MapError::InvalidMap { .. }
             | MapError::DamagedMap { .. }
+            | MapError::StateFormat { .. }
+            | MapError::DamagedState { .. }
             | MapError::NoRouteGraph { .. }
             | MapError::NothingTogether { .. }
             | MapError::NoInformation { .. }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use covimap_embed::DistanceCurve;
-use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, Warning};
+use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, UpdateReport, Warning};
 
 use crate::table;
 
@@ -25,6 +25,9 @@ pub fn of(report: &BuildReport) -> String {
         counted(report.steps, "step"),
     );
     add(&mut text, format_args!("stress-1 {:.4} ({})", report.stress1, kruskal(report.stress1)));
+    if let Some(update) = &report.update {
+        add(&mut text, self::update(update));
+    }
     if let Some(rate) = report.honesty.misrecognition {
         let aside = counted(report.honesty.set_aside, "pair");
         add(
@@ -34,6 +37,21 @@ pub fn of(report: &BuildReport) -> String {
     }
     for warning in &report.warnings {
         add(&mut text, self::warning(warning));
+    }
+    text
+}
+
+/// How much an update has changed.
+fn update(update: &UpdateReport) -> String {
+    let (steps, fresh) = (counted(update.steps, "new step"), counted(update.landmarks, "new landmark"));
+    let mut text = format!("updated with {steps}, {fresh}: ");
+    match &update.whole {
+        Some(reason) => {
+            text += &format!("everything was solved again and laid onto the old map, because {reason}")
+        }
+        None => {
+            text += &format!("{} solved again, the others did not move", counted(update.solved, "landmark"))
+        }
     }
     text
 }
@@ -169,6 +187,7 @@ mod tests {
             honesty: HonestyReport { set_aside: 7, misrecognition: Some(0.0123) },
             regions: 2,
             stress1: 0.031,
+            update: None,
             components: Vec::new(),
             warnings: vec![Warning {
                 kind: "seen_once".into(),

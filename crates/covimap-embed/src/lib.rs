@@ -4,6 +4,7 @@
 //! ([`DistanceMatrix`]) or as a weighted list of known pairs ([`PairDistances`]): a pair that
 //! is not listed is *unknown*, which is not the same as far away.
 
+mod anchored;
 mod classical;
 mod closure;
 mod disparity;
@@ -35,6 +36,7 @@ mod starts;
 mod stress;
 mod synchronise;
 
+pub use anchored::anchored_while;
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use disparity::{PairBounds, Transformation};
 pub use distance_function::{

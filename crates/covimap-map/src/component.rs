@@ -3,8 +3,8 @@
 use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1};
 use rayon::prelude::*;
 
-use crate::distances::{ComponentSteps, DistanceReport, Distances};
-use crate::places::{SeenSets, refine};
+use crate::distances::{ComponentSteps, DistanceReport, Distances, Law};
+use crate::places::{SeenSets, Sensor, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
@@ -32,6 +32,18 @@ pub(crate) struct ComponentMap {
     pub iterations: usize,
     pub converged: bool,
     pub distances: Option<DistanceReport>,
+    pub basis: Basis,
+}
+
+/// What is needed to go on from a component's map.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Basis {
+    /// Positions of least stress, before the refinement, in the frame of the map.
+    pub polished: Vec<Point>,
+    /// What turned counts into distances; `None` for the fixed logarithm.
+    pub law: Option<Law>,
+    /// The sensor of the refinement; `None` where nothing was refined.
+    pub sensor: Option<Sensor>,
 }
 
 /// What is known of a connected component besides its links.
@@ -63,7 +75,7 @@ pub(crate) fn map_component(
 ///
 /// Regions at a hinge are widened to all landmarks that their cores are linked to, and solved and stitched
 /// once more: what more they share may decide the side.
-fn stitched(
+pub(crate) fn stitched(
     graph: &LinkGraph,
     params: &AutoParams,
     observer: &dyn Observer,
@@ -132,13 +144,14 @@ pub(crate) fn settle(
     observer.finished(Stage::Polish);
 
     let start = std::mem::take(&mut polished.points);
-    let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        start
+    let least = start.clone();
+    let (points, sensor) = if params.refine_iterations == 0 || graph.landmarks() < 3 {
+        (start, None)
     } else {
         begin(Stage::Refine, Some(params.refine_iterations as u64), observer)?;
         let refined = refine(graph, evidence.sets, start, params.refine_iterations, observer)?;
         observer.finished(Stage::Refine);
-        refined.points
+        (refined.points, Some(refined.sensor))
     };
     let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
@@ -152,11 +165,12 @@ pub(crate) fn settle(
         seams: SeamsReport::default(),
         path_pull: shape.pull,
         points,
+        basis: Basis { polished: least, law, sensor },
     })
 }
 
 /// Tells the observer of a stage, unless it asks to stop.
-fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
+pub(crate) fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
     observer.started(stage, total);
     if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
 }
@@ -179,22 +193,23 @@ fn polish(
 /// Brings the points of a component into the frame that all maps use: the centroid at the origin,
 /// the x axis along the greatest spread, and the first point at `x >= 0` and `y >= 0`.
 ///
-/// The last choice includes the handedness, which co-visibility cannot tell.
-pub(crate) fn put_in_frame(points: &mut [Point]) {
+/// The last choice includes the handedness, which co-visibility cannot tell. `companions` go along and have no
+/// say.
+pub(crate) fn put_in_frame(points: &mut [Point], companions: &mut [Point]) {
     let n = points.len() as f64;
     let centre = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / n);
-    for point in points.iter_mut() {
+    for point in points.iter_mut().chain(companions.iter_mut()) {
         *point = [point[0] - centre[0], point[1] - centre[1]];
     }
     // The direction of greatest spread is half the angle of the sum of (x + iy)^2.
     let real: f64 = points.iter().map(|[x, y]| x * x - y * y).sum();
     let imaginary: f64 = points.iter().map(|[x, y]| 2.0 * x * y).sum();
     let (sin, cos) = (0.5 * imaginary.atan2(real)).sin_cos();
-    for point in points.iter_mut() {
+    for point in points.iter_mut().chain(companions.iter_mut()) {
         *point = [cos * point[0] + sin * point[1], cos * point[1] - sin * point[0]];
     }
     let signs = points.first().map_or([1.0; 2], |first| first.map(|c| if c < 0.0 { -1.0 } else { 1.0 }));
-    for point in points {
+    for point in points.iter_mut().chain(companions) {
         // Adding zero turns a negative zero into a positive one.
         *point = [signs[0] * point[0] + 0.0, signs[1] * point[1] + 0.0];
     }
@@ -208,13 +223,15 @@ mod tests {
     fn the_frame_does_not_depend_on_where_the_map_was() {
         let shape = [[2.0, 1.0], [0.0, 0.0], [5.0, 0.5], [1.0, -1.0]];
         let mut wanted = shape;
-        put_in_frame(&mut wanted);
+        put_in_frame(&mut wanted, &mut []);
         assert!(wanted[0][0] >= 0.0 && wanted[0][1] >= 0.0);
         let (sin, cos) = 0.7f64.sin_cos();
         for mirror in [1.0, -1.0] {
             let mut moved =
                 shape.map(|[x, y]| [cos * x - sin * mirror * y + 3.0, sin * x + cos * mirror * y - 8.0]);
-            put_in_frame(&mut moved);
+            let mut companion = [moved[2]];
+            put_in_frame(&mut moved, &mut companion);
+            assert_eq!(companion[0], moved[2]);
             for (a, b) in moved.iter().zip(&wanted) {
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12, "{moved:?} {wanted:?}");
             }
@@ -224,8 +241,8 @@ mod tests {
     #[test]
     fn the_frame_of_one_point_and_of_none() {
         let mut one = [[4.0, -2.0]];
-        put_in_frame(&mut one);
+        put_in_frame(&mut one, &mut []);
         assert_eq!(one, [[0.0, 0.0]]);
-        put_in_frame(&mut []);
+        put_in_frame(&mut [], &mut []);
     }
 }

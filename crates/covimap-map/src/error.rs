@@ -61,6 +61,27 @@ pub enum MapError {
         /// What is wrong with it.
         what: String,
     },
+    /// A state of a format that this build cannot read.
+    #[error(
+        "{file}: state is format {found}, this build reads {known}; use the covimap that wrote it or build again \
+         with --state"
+    )]
+    StateFormat {
+        /// File as the user named it.
+        file: String,
+        /// Format number of the file.
+        found: u32,
+        /// Format number that this build reads.
+        known: u32,
+    },
+    /// A file that is no state, or a state that is not as it was written.
+    #[error("{file}: no whole state, {what}; give one that `covimap build --state` wrote, or build again")]
+    DamagedState {
+        /// File as the user named it.
+        file: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A component without a road makes no route graph.
     #[error(
         "component {component} of the map has no line of sight, so there is no route in it; give another component, or \

@@ -1,6 +1,7 @@
 //! A log of which landmarks were seen together in, a global map out.
 
 mod aliases;
+mod bytes;
 mod classical;
 mod component;
 mod covisibility;
@@ -29,8 +30,10 @@ mod sensing;
 mod shape;
 mod sight_lines;
 mod sightings;
+mod state;
 mod stitch;
 mod truth;
+mod update;
 
 pub use classical::{CLASSICAL_LIMIT, squared_distances};
 pub use covisibility::CoVisibility;
@@ -49,10 +52,11 @@ pub use params::{
 };
 pub use progress::{Observer, Silent, Stage};
 pub use regions::{Region, RegionCover};
-pub use report::{BuildReport, ComponentReport, Hinge, SeamReport, SeamsReport, Warning};
+pub use report::{BuildReport, ComponentReport, Hinge, SeamReport, SeamsReport, UpdateReport, Warning};
 pub use sensing::{Sensing, SensorModel};
 pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
 };
+pub use state::MapState;
 pub use truth::Truth;

@@ -104,10 +104,18 @@ impl GlobalMap {
     /// # Errors
     /// [`MapError::Unwritable`] when the path cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), MapError> {
+        output::write_whole(path, |out| self.write_as(path, out))
+    }
+
+    /// Writes the map in the form that a file at `path` has.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_as(&self, path: &Path, out: &mut dyn Write) -> io::Result<()> {
         if path.extension().is_some_and(|extension| extension == BINARY_EXTENSION) {
-            output::write_whole(path, |out| self.write_binary(out))
+            self.write_binary(out)
         } else {
-            output::write_whole(path, |out| self.write_json(out))
+            self.write_json(out)
         }
     }
 

@@ -4,7 +4,7 @@ use covimap_embed::{EmbedError, PairDistances, Point, stress1};
 
 use crate::aliases;
 use crate::classical;
-use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
+use crate::component::{Basis, ComponentMap, Evidence, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
 use crate::report::warnings;
@@ -13,8 +13,8 @@ use crate::shape::Shape;
 use crate::stitch::flatness;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
-    LandmarkId, LinkGraph, MapError, MapperParams, Method, Observer, PlacedLandmark, SeamsReport, SightLines,
-    SightingLog, Stage,
+    LandmarkId, LinkGraph, MapError, MapState, MapperParams, Method, Observer, PlacedLandmark, SeamsReport,
+    Sensing, SightLines, SightingLog, Stage,
 };
 
 /// Least over greatest spread of the partners of a landmark below which they lie on a line.
@@ -45,6 +45,26 @@ impl Mapper {
     /// [`MapError::Interrupted`] if the observer asks for it.
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
         let counts = CoVisibility::count(log, observer)?;
+        Ok(self.build_known(log, counts, observer)?.map)
+    }
+
+    /// As [`Mapper::build`], and keeps what is needed to go on when there are more steps: see [`MapState`].
+    ///
+    /// # Errors
+    /// As [`Mapper::build`].
+    pub fn build_with_state(&self, log: SightingLog, observer: &dyn Observer) -> Result<MapState, MapError> {
+        let counts = CoVisibility::count(&log, observer)?;
+        let built = self.build_known(&log, counts, observer)?;
+        Ok(MapState::new(log, built))
+    }
+
+    /// Maps a log that is counted already.
+    pub(crate) fn build_known(
+        &self,
+        log: &SightingLog,
+        counts: CoVisibility,
+        observer: &dyn Observer,
+    ) -> Result<Built, MapError> {
         let aliases = match self.params.method {
             Method::Auto => aliases::find(&counts),
             Method::Classical => Vec::new(),
@@ -53,15 +73,15 @@ impl Mapper {
             return self.build_counted(log, counts, None, observer);
         }
         let split = self.params.auto.split_aliases;
-        let mut map = if split {
+        let mut built = if split {
             let log = aliases::split(log, &aliases);
-            let counts = CoVisibility::count(&log, observer)?;
-            self.build_counted(&log, counts, None, observer)?
+            let split = CoVisibility::count(&log, observer)?;
+            Built { counts, ..self.build_counted(&log, split, None, observer)? }
         } else {
             self.build_counted(log, counts, None, observer)?
         };
-        map.report.warnings.insert(0, aliases::warning(log, &aliases, split));
-        Ok(map)
+        built.map.report.warnings.insert(0, aliases::warning(log, &aliases, split));
+        Ok(built)
     }
 
     /// Polishes and refines from given positions, without regions and local maps: what the same minimisation
@@ -90,7 +110,7 @@ impl Mapper {
         }
         let params = MapperParams { method: Method::Auto, ..self.params.clone() };
         let counts = CoVisibility::count(log, observer)?;
-        Self { params }.build_counted(log, counts, Some(start), observer)
+        Ok(Self { params }.build_counted(log, counts, Some(start), observer)?.map)
     }
 
     /// Maps a log in which every ID is one landmark.
@@ -100,7 +120,7 @@ impl Mapper {
         counts: CoVisibility,
         start: Option<&[Point]>,
         observer: &dyn Observer,
-    ) -> Result<GlobalMap, MapError> {
+    ) -> Result<Built, MapError> {
         check_information(&counts)?;
         let (graph, honesty) = match self.params.method {
             Method::Auto => honest_links(&counts),
@@ -108,7 +128,7 @@ impl Mapper {
         };
         let components = graph.components();
         let sets = SeenSets::by_component(log, &components);
-        let maps: Vec<ComponentMap> = match self.params.method {
+        let mut maps: Vec<ComponentMap> = match self.params.method {
             Method::Auto => {
                 let known =
                     Known { log, counts: &counts, graph: &graph, components: &components, sets: &sets };
@@ -123,9 +143,24 @@ impl Mapper {
         };
         let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
         let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
-        let landmarks = place(&counts, &graph, &components, &maps);
-        let report = report(&counts, &graph, honesty, &components, maps, &landmarks, log);
-        let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
+        let bases = maps.iter_mut().map(|map| std::mem::take(&mut map.basis)).collect();
+        let known = Known { log, counts: &counts, graph: &graph, components: &components, sets: &sets };
+        let map = self.assemble(&known, honesty, maps, sensing)?;
+        Ok(Built { map, counts, bases })
+    }
+
+    /// The product, from the maps of all components.
+    pub(crate) fn assemble(
+        &self,
+        known: &Known,
+        honesty: HonestyReport,
+        maps: Vec<ComponentMap>,
+        sensing: Option<Sensing>,
+    ) -> Result<GlobalMap, MapError> {
+        let Known { log, counts, graph, components, .. } = *known;
+        let landmarks = place(counts, graph, components, &maps);
+        let report = report(counts, graph, honesty, components, maps, &landmarks, log);
+        let sight_lines = SightLines::find(&landmarks, counts, graph, components);
         let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
             .with_sight_lines(sight_lines)?;
         match sensing {
@@ -134,7 +169,7 @@ impl Mapper {
         }
     }
 
-    fn auto_components(
+    pub(crate) fn auto_components(
         &self,
         known: &Known,
         start: Option<&[Point]>,
@@ -158,21 +193,31 @@ impl Mapper {
             } else {
                 map_one(&graph.restricted_to(members), &evidence)?
             };
-            put_in_frame(&mut map.points);
+            put_in_frame(&mut map.points, &mut map.basis.polished);
             Ok(map)
         };
         components.iter().zip(sets).zip(steps).map(map).collect()
     }
 }
 
+/// A map, and what it was made of.
+pub(crate) struct Built {
+    pub map: GlobalMap,
+    /// Of the log as it was given, whatever became of its aliases.
+    pub counts: CoVisibility,
+    /// One a component of the map.
+    pub bases: Vec<Basis>,
+}
+
 /// A log with what was counted of it.
 #[derive(Clone, Copy)]
-struct Known<'a> {
-    log: &'a SightingLog,
-    counts: &'a CoVisibility,
-    graph: &'a LinkGraph,
-    components: &'a [Vec<u32>],
-    sets: &'a [SeenSets],
+pub(crate) struct Known<'a> {
+    pub log: &'a SightingLog,
+    pub counts: &'a CoVisibility,
+    pub graph: &'a LinkGraph,
+    /// Components to map.
+    pub components: &'a [Vec<u32>],
+    pub sets: &'a [SeenSets],
 }
 
 /// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
@@ -213,7 +258,7 @@ fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
     Ok(())
 }
 
-fn honest_links(counts: &CoVisibility) -> (LinkGraph, HonestyReport) {
+pub(crate) fn honest_links(counts: &CoVisibility) -> (LinkGraph, HonestyReport) {
     let honest = HonestLinks::judge(counts);
     (LinkGraph::from_honest(counts, &honest), honest.report())
 }
@@ -230,12 +275,13 @@ fn classical_component(
         return Err(MapError::Interrupted);
     }
     let mut points = classical::solve(counts, members, params)?.points;
-    put_in_frame(&mut points);
+    put_in_frame(&mut points, &mut []);
     observer.finished(Stage::Classical);
     let pairs = paper_pairs(counts, graph, members, params);
     Ok(ComponentMap {
         stress1: stress1(&pairs, &points),
         region: vec![0; members.len()],
+        basis: Basis { polished: points.clone(), law: None, sensor: None },
         points,
         regions: 1,
         branch_of: vec![0],
@@ -330,6 +376,7 @@ fn report(
         regions: components.iter().map(|component| component.regions).sum(),
         stress1: (squares / pairs.max(1) as f64).sqrt(),
         honesty,
+        update: None,
         warnings: warnings(counts, graph, honesty, landmarks, &components, log.names()),
         components,
     }

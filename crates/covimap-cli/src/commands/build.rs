@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::ValueEnum;
 use covimap_embed::DistanceFamily;
 use covimap_map::{
-    DistanceChoice, GlobalMap, LogFormat, Mapper, MapperParams, MemoryEstimate, Method, Phi, SightingLog,
-    Stage, output::Output,
+    DistanceChoice, GlobalMap, LogFormat, MapError, MapState, Mapper, MapperParams, MemoryEstimate, Method,
+    Phi, SightingLog, Stage, output::Output,
 };
 
 use crate::console::{self, Console};
@@ -24,6 +24,9 @@ pub struct Args {
     /// Where the map goes; `-` is stdout [default: the log's name with .map.json, in this folder]
     #[arg(short, long, value_name = "MAP.json")]
     output: Option<PathBuf>,
+    /// Also write what `covimap update` needs to add steps to the map later
+    #[arg(long, value_name = "STATE")]
+    state: Option<PathBuf>,
     #[command(flatten)]
     settings: Settings,
     #[command(flatten)]
@@ -134,18 +137,39 @@ impl Args {
         console.say(format_args!("memory: about {} MB", memory.peak().div_ceil(1_000_000)));
 
         let progress = Progress::new(console);
-        let map = mapper.build(&log, &progress)?;
+        let made = match &self.state {
+            Some(file) => Made::State(file, Box::new(mapper.build_with_state(log, &progress)?)),
+            None => Made::Map(Box::new(mapper.build(&log, &progress)?)),
+        };
         times.extend(progress.end());
 
         let deferral = Deferral::of_writing();
-        map.save(&path)?;
+        made.save(&path)?;
         drop(deferral);
+        let map = made.map();
         console.say(summary::of(map.report()));
         console.say(times_line(&times));
         if path != Path::new("-") {
             console.say(next_steps(&path));
         }
-        if self.json { Ok(console::print(json(&map, &path, &memory, &times))?) } else { Ok(()) }
+        if self.json { Ok(console::print(json(map, &path, &memory, &times))?) } else { Ok(()) }
+    }
+
+    fn check_state(&self, state: &Path, path: &Path) -> anyhow::Result<()> {
+        if state == Path::new("-") {
+            return Err(conflict("the state is read again by `update`, so it must be a file; give its name"));
+        }
+        if state == path || same_file(state, path) {
+            return Err(conflict("--state and --output are the same file; give two"));
+        }
+        if let Some(log) = self.input.logs.iter().find(|log| same_file(log, state)) {
+            let log = log.display();
+            return Err(conflict(format_args!(
+                "the state would replace the log {log}; give another --state"
+            )));
+        }
+        drop(Output::open(state)?);
+        Ok(())
     }
 
     /// Finds out before the work whether its result can be put in place.
@@ -157,10 +181,44 @@ impl Args {
             let log = log.display();
             return Err(conflict(format_args!("the map would replace the log {log}; give another --output")));
         }
+        if let Some(state) = &self.state {
+            self.check_state(state, path)?;
+        }
         // Dropped at once: a build that is killed leaves no temporary file behind.
         drop(Output::open(path)?);
         Ok(())
     }
+}
+
+/// What a build has made.
+enum Made<'a> {
+    Map(Box<GlobalMap>),
+    /// With what is needed to go on, and where that goes.
+    State(&'a Path, Box<MapState>),
+}
+
+impl Made<'_> {
+    fn map(&self) -> &GlobalMap {
+        match self {
+            Self::Map(map) => map,
+            Self::State(_, state) => state.map(),
+        }
+    }
+
+    /// Writes the map, and the state if there is one: both or neither.
+    fn save(&self, path: &Path) -> Result<(), MapError> {
+        match self {
+            Self::Map(map) => map.save(path),
+            Self::State(file, state) => save_both(state, file, path),
+        }
+    }
+}
+
+/// Writes a state and its map, each complete before the first takes its place.
+pub fn save_both(state: &MapState, file: &Path, map: &Path) -> Result<(), MapError> {
+    let kept = Output::open(file)?.fill(|out| state.write(out))?;
+    Output::open(map)?.fill(|out| state.map().write_as(map, out))?.keep()?;
+    kept.keep()
 }
 
 impl Settings {
@@ -227,11 +285,11 @@ fn default_output(log: &Path) -> PathBuf {
 }
 
 /// Whether two paths are the same existing file.
-fn same_file(a: &Path, b: &Path) -> bool {
+pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-fn times_line(times: &[(Stage, Duration)]) -> String {
+pub fn times_line(times: &[(Stage, Duration)]) -> String {
     let part =
         |(stage, time): &(Stage, Duration)| format!("{} {:.2} s", progress::name(*stage), time.as_secs_f64());
     format!("time: {}", times.iter().map(part).collect::<Vec<_>>().join(", "))
@@ -253,18 +311,22 @@ fn json(
     memory: &MemoryEstimate,
     times: &[(Stage, Duration)],
 ) -> serde_json::Value {
-    let seconds: serde_json::Map<_, _> = times
-        .iter()
-        .map(|(stage, time)| (progress::name(*stage).replace(' ', "_"), time.as_secs_f64().into()))
-        .collect();
     serde_json::json!({
         "map": path.display().to_string(),
         "method": map.params().method,
         "seed": map.params().seed,
         "report": map.report(),
         "memory_estimate": memory.peak(),
-        "seconds": seconds,
+        "seconds": seconds(times),
     })
+}
+
+/// Seconds that each stage took, by its name.
+pub fn seconds(times: &[(Stage, Duration)]) -> serde_json::Map<String, serde_json::Value> {
+    let entry = |(stage, time): &(Stage, Duration)| {
+        (progress::name(*stage).replace(' ', "_"), time.as_secs_f64().into())
+    };
+    times.iter().map(entry).collect()
 }
 
 #[cfg(test)]

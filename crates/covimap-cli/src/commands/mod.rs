@@ -14,6 +14,7 @@ mod relation;
 mod reproduce;
 mod route;
 mod simulate;
+mod update;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -45,6 +46,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Build(build::Args),
+    Update(update::Args),
     Evaluate(evaluate::Args),
     Export(export::Args),
     Info(info::Args),
@@ -77,6 +79,7 @@ impl Cli {
         let console = Console { quiet: self.quiet };
         match self.command {
             Command::Build(args) => args.run(console),
+            Command::Update(args) => args.run(console),
             Command::Evaluate(args) => args.run(console),
             Command::Export(args) => args.run(console),
             Command::Info(args) => args.run(),

@@ -49,6 +49,23 @@ fn an_interrupted_build_leaves_nothing_behind() {
 }
 
 #[test]
+fn an_interrupted_update_leaves_state_and_map_as_they_were() {
+    let scratch = Scratch::with_square();
+    scratch.succeeds(&["build", "square.jsonl", "--state", "s", "-o", "map.json", "-q"]);
+    let (state, map) = (std::fs::read(scratch.path().join("s")).unwrap(), scratch.read("map.json"));
+    let mut run = endless(&scratch, &["update", "s", "-", "-o", "map.json"]);
+    let mut log = run.stdin.take().unwrap();
+    let block = SQUARE.repeat(10_000);
+    log.write_all(block.as_bytes()).unwrap();
+    signal(&run, "INT");
+    while log.write_all(block.as_bytes()).is_ok() {}
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    assert_eq!(scratch.names(), ["map.json", "s", "square.jsonl"]);
+    assert_eq!(std::fs::read(scratch.path().join("s")).unwrap(), state);
+    assert_eq!(scratch.read("map.json"), map);
+}
+
+#[test]
 fn a_command_that_cannot_stop_by_itself_ends_at_once() {
     let scratch = Scratch::new();
     let mut run = endless(&scratch, &["info", "-"]);

@@ -18,4 +18,5 @@ mod reproduce;
 mod scratch;
 mod simulate;
 mod streams;
+mod update;
 mod usage;

@@ -41,7 +41,7 @@ pub(super) fn count(log: &SightingLog, observer: &dyn Observer) -> Result<CoVisi
 }
 
 /// Steps are numbered and counted in 32 bits.
-fn check_steps(steps: usize) -> Result<(), MapError> {
+pub(super) fn check_steps(steps: usize) -> Result<(), MapError> {
     if u32::try_from(steps).is_err() { Err(MapError::TooManySteps { steps }) } else { Ok(()) }
 }
 

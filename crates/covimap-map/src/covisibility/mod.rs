@@ -1,6 +1,7 @@
 //! How often each landmark was seen, and how often each two of them together.
 
 mod count;
+mod join;
 mod rows;
 mod tally;
 
@@ -70,6 +71,35 @@ impl CoVisibility {
             block.end_row();
         }
         Ok(Self { steps, sightings, pairs: Rows::new(vec![block]) })
+    }
+
+    /// From `n_i` and, of every landmark, the partners that come later, ascending, with `n_ij` of each. `O(m)`.
+    ///
+    /// # Errors
+    /// [`MapError::BadCounts`] as for [`CoVisibility::from_counts`].
+    pub(crate) fn from_later_partners(
+        steps: u64,
+        sightings: Vec<u32>,
+        later: &[Vec<(u32, u32)>],
+    ) -> Result<Self, MapError> {
+        let mut sizes: Vec<usize> = later.iter().map(Vec::len).collect();
+        for (i, row) in (0..).zip(later) {
+            for &(j, count) in row {
+                check_pair((i, j), count, &sightings).map_err(|what| MapError::BadCounts { what })?;
+                sizes[j as usize] += 1;
+            }
+        }
+        let mut block = RowBlock::sized(&sizes);
+        for (i, row) in (0..).zip(later) {
+            for &(j, count) in row {
+                block.put(j as usize, i, count);
+            }
+            // All earlier partners of i are in its row by now.
+            for &(j, count) in row {
+                block.put(i as usize, j, count);
+            }
+        }
+        Ok(Self { steps, sightings, pairs: Rows::new(vec![block.ended()]) })
     }
 
     /// Number of landmarks N.

@@ -25,10 +25,43 @@ impl RowBlock {
         Self { first, starts: vec![0], columns: Vec::new(), values: Vec::new() }
     }
 
+    /// Rows of these sizes, to be filled in any order.
+    pub(super) fn sized(sizes: &[usize]) -> Self {
+        let mut starts = vec![0];
+        starts.extend(sizes.iter().scan(0, |end, size| {
+            *end += size;
+            Some(*end)
+        }));
+        let entries = starts[sizes.len()];
+        Self { first: 0, starts, columns: vec![0; entries], values: vec![0; entries] }
+    }
+
+    /// Puts an entry behind those that a row of [`RowBlock::sized`] has already: `starts` tells how far that is.
+    pub(super) fn put(&mut self, row: usize, column: u32, value: u32) {
+        let place = &mut self.starts[row];
+        self.columns[*place] = column;
+        self.values[*place] = value;
+        *place += 1;
+    }
+
+    /// The rows of [`RowBlock::sized`], all of them filled.
+    pub(super) fn ended(mut self) -> Self {
+        // Every start has moved to its end, the start of the next row.
+        self.starts.insert(0, 0);
+        self.starts.pop();
+        self
+    }
+
     /// Appends an entry to the row that is being made; columns ascend.
     pub(super) fn push(&mut self, column: u32, value: u32) {
         self.columns.push(column);
         self.values.push(value);
+    }
+
+    /// Appends entries that follow those of the row that is being made.
+    pub(super) fn extend(&mut self, columns: &[u32], values: &[u32]) {
+        self.columns.extend_from_slice(columns);
+        self.values.extend_from_slice(values);
     }
 
     /// Ends the row that is being made.

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use proptest::prelude::*;
 
 use super::*;
+use crate::fixtures::{cases, counts_of};
 use crate::{Silent, Stage};
 
 /// The obvious count: every pair of every step.
@@ -154,5 +155,24 @@ fn the_observer_hears_of_every_landmark_and_may_stop_the_count() {
         let result = CoVisibility::count(&log, &watch);
         assert_eq!(matches!(result, Err(MapError::Interrupted)), stops);
         assert_eq!(watch.landmarks.into_inner() == 300, !stops);
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(64))]
+
+    /// Counting the joined log is the oracle.
+    #[test]
+    fn counts_joined_are_the_counts_of_the_joined_log(
+        steps in prop::collection::vec(prop::collection::vec(0_u32..12, 0..6), 0..30),
+        cut in 0_usize..30,
+    ) {
+        let named: Vec<Vec<String>> =
+            steps.iter().map(|step| step.iter().map(u32::to_string).collect()).collect();
+        let cut = cut.min(named.len());
+        let [first, second] = [&named[..cut], &named[cut..]].map(SightingLog::from_steps);
+        let later = first.renumber(&second);
+        let joined = counts_of(&first).joined(&counts_of(&later)).unwrap();
+        prop_assert_eq!(joined, counts_of(&SightingLog::from_steps(&named)));
     }
 }

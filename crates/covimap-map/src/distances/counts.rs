@@ -14,7 +14,7 @@ const BLOCKS: usize = 16;
 
 /// How often the two landmarks of a link were seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct PairCount {
+pub(crate) struct PairCount {
     /// `n`: steps that show both.
     pub together: u32,
     /// `m`: steps that show at least one.

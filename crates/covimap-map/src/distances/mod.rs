@@ -47,7 +47,8 @@ use crate::links::ALPHA;
 use crate::{CoVisibility, LinkGraph, MapError};
 pub use choice::FamilyScore;
 use choice::choose;
-use counts::{PairCount, Sample};
+pub(crate) use counts::PairCount;
+use counts::Sample;
 pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
@@ -91,6 +92,7 @@ pub(crate) struct Distances<'a> {
 }
 
 /// How the distances of links follow from their counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Law {
     curve: DistanceCurve,
     /// Factor that gives the distances of the curve the size of those of the fixed logarithm.
@@ -104,6 +106,15 @@ pub(crate) struct Measured {
     pub pairs: PairDistances,
     /// Share of the pairs that keep less than half of their weight.
     pub doubted: f64,
+}
+
+impl Law {
+    /// Distance and weight of a pair that lies `in_map` apart on the present map, and the share of the weight that
+    /// doubts about walls have left.
+    pub fn measure(&self, count: PairCount, in_map: f64) -> (f64, f64, f64) {
+        let (weight, kept) = self.trust.weight(&self.curve, count, in_map);
+        (self.stretch * self.curve.distance(count.frequency()), weight * kept, kept)
+    }
 }
 
 impl<'a> Distances<'a> {
@@ -154,9 +165,8 @@ impl<'a> Distances<'a> {
     /// Distances and weights of the links under a law, seen from the present map.
     pub fn measure(&self, law: &Law, points: &[Point]) -> Measured {
         let measure = |(pair, count): (&Pair, &PairCount)| {
-            let (weight, kept) = law.trust.weight(&law.curve, *count, length(points, [pair.i, pair.j]));
-            let distance = law.stretch * law.curve.distance(count.frequency());
-            (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
+            let (distance, weight, kept) = law.measure(*count, length(points, [pair.i, pair.j]));
+            (Pair { distance, weight, ..*pair }, kept < HALF)
         };
         let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
             self.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();

@@ -2,7 +2,7 @@
 
 use crate::SightingLog;
 
-/// Component and place in it of every landmark of a log.
+/// Component and place in it of the landmarks of a log; component `u32::MAX` for those in none.
 pub(crate) struct Membership {
     of: Vec<(u32, u32)>,
 }
@@ -16,9 +16,9 @@ pub(crate) struct ComponentSteps<'a> {
 }
 
 impl Membership {
-    /// `components[c]` are the landmarks of component `c`, each landmark of the log in one of them.
+    /// `components[c]` are the landmarks of component `c`, each landmark of the log in one of them at most.
     pub fn new(landmarks: usize, components: &[Vec<u32>]) -> Self {
-        let mut of = vec![(0, 0); landmarks];
+        let mut of = vec![(u32::MAX, 0); landmarks];
         for (component, members) in (0..).zip(components) {
             for (place, &member) in (0..).zip(members) {
                 of[member as usize] = (component, place);
@@ -33,8 +33,10 @@ impl<'a> ComponentSteps<'a> {
     pub fn of_all(log: &'a SightingLog, membership: &'a Membership, components: usize) -> Vec<Self> {
         let mut steps = vec![Vec::new(); components];
         for (step, seen) in log.iter().enumerate() {
-            if let Some(&first) = seen.first() {
-                steps[membership.of[first as usize].0 as usize].push(step);
+            if let Some(&first) = seen.first()
+                && let Some(steps) = steps.get_mut(membership.of[first as usize].0 as usize)
+            {
+                steps.push(step);
             }
         }
         let of_one = |(component, steps)| Self { log, membership, component, steps };

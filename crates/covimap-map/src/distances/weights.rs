@@ -16,6 +16,7 @@
 //! S. Geman, D. McClure, "Statistical methods for tomographic image reconstruction", Bull. ISI 52, 1987.
 
 use covimap_embed::{DistanceCurve, DistanceFunction};
+use serde::{Deserialize, Serialize};
 
 use super::counts::PairCount;
 
@@ -29,7 +30,7 @@ pub(super) const KEPT: f64 = 0.01;
 const MISFITS: i32 = 24;
 
 /// What (1) and (2) need to know of all pairs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Trust {
     /// `tau`.
     pub repetition: f64,

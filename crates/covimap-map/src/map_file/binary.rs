@@ -20,7 +20,8 @@
 use std::io::{self, Write};
 
 use super::{FORMAT, Head, Parts, in_file, object};
-use crate::{GlobalMap, LandmarkId, LandmarkNames, MapError, PlacedLandmark, Sensing};
+use crate::bytes::{Rest, Summed, check_sum, names, write_names};
+use crate::{GlobalMap, LandmarkId, MapError, PlacedLandmark, Sensing};
 
 /// Ending of names of files in this form.
 pub(super) const BINARY_EXTENSION: &str = "covimap";
@@ -38,7 +39,7 @@ impl GlobalMap {
     /// # Errors
     /// Those of `out`.
     pub fn write_binary(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut out = Summed { out, sum: crc32fast::Hasher::new() };
+        let mut out = Summed::new(out);
         let head = serde_json::to_vec(&Head {
             settings: object(self.params())?,
             report: self.report().clone(),
@@ -54,12 +55,7 @@ impl GlobalMap {
         for size in [self.len(), self.sight_lines().count(), letters] {
             out.write_all(&(size as u64).to_le_bytes())?;
         }
-        for name in self.names().iter() {
-            out.write_all(&(name.len() as u32).to_le_bytes())?;
-        }
-        for name in self.names().iter() {
-            out.write_all(name.as_bytes())?;
-        }
+        write_names(&mut out, self.names())?;
         for coordinate in self.landmarks().iter().flat_map(|placed| placed.position) {
             out.write_all(&coordinate.to_le_bytes())?;
         }
@@ -78,8 +74,7 @@ impl GlobalMap {
         for number in self.sight_lines().pairs().flat_map(|(a, b, steps)| [a.0, b.0, steps]) {
             out.write_all(&number.to_le_bytes())?;
         }
-        let sum = out.sum.finalize();
-        out.out.write_all(&sum.to_le_bytes())
+        out.finish()
     }
 
     /// Reads the binary form of a map file; `file` is what errors call it.
@@ -106,13 +101,6 @@ impl GlobalMap {
     }
 }
 
-fn check_sum(bytes: &[u8]) -> Result<(), String> {
-    let (body, sum) = bytes.split_last_chunk().ok_or("it ends too early")?;
-    let (told, found) = (u32::from_le_bytes(*sum), crc32fast::hash(body));
-    let what = || format!("its check sum is {found:08x} instead of {told:08x}");
-    if found == told { Ok(()) } else { Err(what()) }
-}
-
 /// What stands between the format and the check sum.
 fn contents(rest: &mut Rest) -> Result<(Head, Parts), String> {
     let length = rest.size()?;
@@ -137,76 +125,8 @@ fn contents(rest: &mut Rest) -> Result<(Head, Parts), String> {
         deviation: sensing.iter().copied().skip(1).step_by(2).collect(),
         links: links.as_chunks().0.iter().map(link).collect(),
     };
-    match rest.0.len() {
-        4 => Ok((head, parts)),
-        left => Err(format!("{left} bytes are left where 4 should be")),
-    }
-}
-
-fn names(lengths: Vec<u32>, text: &[u8]) -> Result<LandmarkNames, String> {
-    let text = std::str::from_utf8(text).map_err(|error| format!("its IDs are no text, {error}"))?;
-    let mut names = LandmarkNames::default();
-    let mut start = 0;
-    for length in lengths {
-        let end = start + length as usize;
-        names.push(text.get(start..end).ok_or("the lengths of its IDs do not add up")?);
-        start = end;
-    }
-    Ok(names)
-}
-
-/// What is not read yet.
-struct Rest<'a>(&'a [u8]);
-
-impl<'a> Rest<'a> {
-    fn take(&mut self, length: usize) -> Result<&'a [u8], String> {
-        let short = || format!("it ends {} bytes too early", length - self.0.len());
-        let (taken, rest) = self.0.split_at_checked(length).ok_or_else(short)?;
-        self.0 = rest;
-        Ok(taken)
-    }
-
-    /// So many groups of `group` values of `N` bytes.
-    fn list<const N: usize, T>(
-        &mut self,
-        count: usize,
-        value: impl Fn([u8; N]) -> T,
-        group: usize,
-    ) -> Result<Vec<T>, String> {
-        let length = count.checked_mul(N * group).ok_or("its sizes are beyond any memory")?;
-        Ok(self.take(length)?.as_chunks().0.iter().copied().map(value).collect())
-    }
-
-    fn numbers(&mut self, count: usize) -> Result<Vec<u32>, String> {
-        self.list(count, u32::from_le_bytes, 1)
-    }
-
-    fn number(&mut self) -> Result<u32, String> {
-        Ok(self.numbers(1)?[0])
-    }
-
-    fn size(&mut self) -> Result<usize, String> {
-        let size = self.list(1, u64::from_le_bytes, 1)?[0];
-        usize::try_from(size).map_err(|_| "its sizes are beyond any memory".to_owned())
-    }
-}
-
-/// Writes and keeps the check sum of what was written.
-struct Summed<'a> {
-    out: &'a mut dyn Write,
-    sum: crc32fast::Hasher,
-}
-
-impl Write for Summed<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.out.write(bytes)?;
-        self.sum.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
+    rest.end()?;
+    Ok((head, parts))
 }
 
 #[cfg(test)]

@@ -179,6 +179,7 @@ proptest! {
                 landmarks: seed, regions: 1, pairs: 2, stress1: stress1 / 3.0, iterations: 4, converged: true,
                 distances: Some(distances(stress1)), ..Default::default()
             }],
+            update: None,
             warnings: vec![Warning {
                 kind: "seen_once".into(), count: 1, examples: vec!["\u{1F916}".into()], message: "a\nb".into(),
             }],

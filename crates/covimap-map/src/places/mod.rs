@@ -37,6 +37,7 @@
 //! J. Neyman, E. L. Scott, "Consistent estimates based on partially consistent observations",
 //! Econometrica 16, 1948.
 
+mod again;
 mod grid;
 mod observe;
 mod posterior;
@@ -51,6 +52,7 @@ use covimap_embed::Point;
 use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
+pub(crate) use again::{Again, refine_some};
 pub(crate) use observe::observe;
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
@@ -98,7 +100,7 @@ pub(crate) fn refine(
     let mut model = fit_sensor(graph, &neighbours, sets, start);
     for _ in 0..iterations {
         let scores = landmark_scores(&neighbours, sets, &model, observer)?;
-        let moved = model.move_landmarks(&scores);
+        let moved = model.move_landmarks(&scores, |_| true);
         model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, false);
         observer.advanced(1);
         if moved < STILL {
@@ -122,12 +124,13 @@ fn fit_sensor(graph: &LinkGraph, neighbours: &Neighbours, sets: &SeenSets, point
 }
 
 impl Model {
-    /// One Fisher-scoring step of every landmark; returns the length of the moves in standard
+    /// One Fisher-scoring step of every landmark that is free; returns the length of the moves in standard
     /// deviations, both as root mean squares over the landmarks.
-    fn move_landmarks(&mut self, scores: &[Scores]) -> f64 {
+    fn move_landmarks(&mut self, scores: &[Scores], free: impl Fn(usize) -> bool) -> f64 {
         let longest = LONGEST_MOVE * self.sensor.range;
         let (mut squares, mut variances) = (0.0, 0.0);
-        for ((point, p), scores) in self.points.iter_mut().zip(&mut self.detectability).zip(scores) {
+        let landmarks = self.points.iter_mut().zip(&mut self.detectability).zip(scores).enumerate();
+        for (_, ((point, p), scores)) in landmarks.filter(|landmark| free(landmark.0)) {
             let step = scores.step(longest);
             *point = [point[0] + RELAXED * step[0], point[1] + RELAXED * step[1]];
             *p = scores.improved_detectability(*p, self.sensor.detectability);

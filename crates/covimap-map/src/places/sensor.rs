@@ -7,7 +7,7 @@ pub(super) const FALSE_SIGHTING: (f64, f64) = (1e-3, 0.2);
 pub(super) const DETECTABILITY: (f64, f64) = (0.02, 0.995);
 
 /// What the log says of the sensor, in map units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Sensor {
     /// Range `R` within which a landmark is seen.
     pub range: f64,

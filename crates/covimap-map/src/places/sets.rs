@@ -13,12 +13,12 @@ pub(crate) struct SeenSets {
 }
 
 impl SeenSets {
-    /// The sets of every component; landmarks are numbered by their places in their component.
+    /// The sets of every component that is given; landmarks are numbered by their places in their component.
     ///
     /// A step whose sightings lie in several components is a set of each: what it shows of another one is
     /// a recognition error in its eyes.
     pub fn by_component(log: &SightingLog, components: &[Vec<u32>]) -> Vec<Self> {
-        let mut place = vec![(0, 0); log.names().len()];
+        let mut place = vec![(usize::MAX, 0); log.names().len()];
         for (component, members) in components.iter().enumerate() {
             for (k, &member) in members.iter().enumerate() {
                 place[member as usize] = (component, k as u32);
@@ -30,7 +30,9 @@ impl SeenSets {
             let seen = log.step(step);
             for (k, component) in seen.iter().map(of).enumerate() {
                 // At the second of the landmarks that lie in this component.
-                if seen[..k].iter().filter(|other| of(other) == component).count() == 1 {
+                if component < components.len()
+                    && seen[..k].iter().filter(|other| of(other) == component).count() == 1
+                {
                     steps[component].push(step);
                 }
             }
@@ -39,7 +41,14 @@ impl SeenSets {
         steps.into_iter().enumerate().map(sets).collect()
     }
 
-    fn of_steps(log: &SightingLog, component: usize, mut steps: Vec<usize>, place: &[(usize, u32)]) -> Self {
+    /// The sets of steps that show at least two landmarks of a component; `place` tells of every landmark of the
+    /// log its component and place in it.
+    pub fn of_steps(
+        log: &SightingLog,
+        component: usize,
+        mut steps: Vec<usize>,
+        place: &[(usize, u32)],
+    ) -> Self {
         let set = |step: usize| {
             let places = log.step(step).iter().map(|&landmark| place[landmark as usize]);
             places.filter(|place| place.0 == component).map(|place| place.1)

@@ -2,13 +2,16 @@
 //! changes from run to run (times go to the [`crate::Observer`]).
 
 mod seams;
+mod update;
 mod warnings;
 
 use serde::{Deserialize, Serialize};
 
 use crate::DistanceReport;
+pub(crate) use seams::joined_seams;
 pub use seams::{Hinge, SeamReport, SeamsReport};
-pub(crate) use warnings::{aliases_warning, warnings};
+pub use update::UpdateReport;
+pub(crate) use warnings::{aliases_warning, carried_warning, warnings};
 
 use crate::HonestyReport;
 
@@ -73,6 +76,9 @@ pub struct BuildReport {
     pub stress1: f64,
     /// The components, largest first.
     pub components: Vec<ComponentReport>,
+    /// What the last update did, if there was one since the build.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub update: Option<UpdateReport>,
     /// What the reader should know.
     pub warnings: Vec<Warning>,
 }

@@ -51,3 +51,25 @@ impl SeamsReport {
         self
     }
 }
+
+/// The seams of charts that have become one, and new hinges; `place` gives regions their new numbers, `None` to those
+/// that are not in it.
+pub(crate) fn joined_seams<'a>(
+    charts: impl Iterator<Item = &'a SeamsReport>,
+    hinges: &[Hinge],
+    place: impl Fn(u32) -> Option<u32>,
+) -> SeamsReport {
+    let seam = |seam: &SeamReport| {
+        let [a, b] = seam.regions.map(&place);
+        Some(SeamReport { regions: [a?, b?], ..seam.clone() })
+    };
+    let hinge = |hinge: &Hinge| Some(Hinge { seam: seam(&hinge.seam)?, landmarks: hinge.landmarks });
+    let mut joined = SeamsReport::default();
+    for chart in charts {
+        joined.count += chart.count;
+        joined.dropped.extend(chart.dropped.iter().filter_map(seam));
+        joined.hinges.extend(chart.hinges.iter().filter_map(hinge));
+    }
+    joined.hinges.extend(hinges.iter().filter_map(hinge));
+    joined
+}

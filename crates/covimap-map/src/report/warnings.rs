@@ -109,6 +109,23 @@ pub(crate) fn aliases_warning<'a>(ids: impl ExactSizeIterator<Item = &'a str>, s
     )
 }
 
+/// The warning about charts that new steps have joined to others, each by one of its IDs.
+pub(crate) fn carried_warning<'a>(ids: impl Iterator<Item = &'a str>) -> Option<Warning> {
+    let ids: Vec<String> = ids.map(str::to_owned).collect();
+    let warn = |kind: &str, message: &str| Warning {
+        kind: kind.to_owned(),
+        count: ids.len() as u64,
+        examples: ids.iter().take(EXAMPLES).cloned().collect(),
+        message: message.to_owned(),
+    };
+    let joined = warn(
+        "charts_joined",
+        "charts that new steps have tied to larger ones; each was carried into the frame of the larger one, so that \
+         all its landmarks have new coordinates, turned and perhaps mirrored",
+    );
+    (!ids.is_empty()).then_some(joined)
+}
+
 fn warnings_without_ids(
     honesty: HonestyReport,
     components: &[ComponentReport],

@@ -10,7 +10,7 @@
 //! ever seen together are *occluded* from each other: something, a wall as a rule, stands between them. From
 //! where one of them is seen, not seeing the other says nothing.
 
-mod occlusion;
+pub(crate) mod occlusion;
 mod warp;
 
 use covimap_embed::Point;
@@ -189,24 +189,13 @@ pub(crate) fn learn(
                 part = graph.restricted_to(members);
                 &part
             };
-            let (found, warp) = rayon::join(
-                || observe(graph, sets, points, observer),
-                || warp::warp(counts, graph, members, points),
-            );
-            let found = found?;
-            let sensor = SensorModel {
-                range: found.sensor.range,
-                edge: found.sensor.edge,
-                detectability: found.sensor.detectability,
-                outliers: found.outliers,
-                warp: warp?,
-            };
-            sensors.push(sensor);
+            let found = learn_one(counts, graph, members, points, sets, observer)?;
+            sensors.push(found.sensor);
             for (place, &member) in members.iter().enumerate() {
                 detectability[member as usize] = found.detectability[place];
                 deviation[member as usize] = found.deviation[place];
             }
-            occluded.extend(occlusion::pairs(counts, members, points, &sensor, &found.detectability));
+            occluded.extend(occlusion::pairs(counts, members, points, &found.sensor, &found.detectability));
         } else if let Some(&sensor) = sensors.first() {
             sensors.push(sensor);
             for &member in members {
@@ -221,6 +210,36 @@ pub(crate) fn learn(
         return Ok(None);
     }
     Sensing::from_parts(sensors, detectability, deviation, &occluded).map(Some)
+}
+
+/// What is learnt of one component.
+pub(crate) struct LearntSensor {
+    pub sensor: SensorModel,
+    pub detectability: Vec<f64>,
+    pub deviation: Vec<f64>,
+}
+
+/// Learns the sensor of a component of at least three landmarks from its finished chart; `graph` has the landmarks
+/// `members` of the counts.
+pub(crate) fn learn_one(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    members: &[u32],
+    points: &[Point],
+    sets: &SeenSets,
+    observer: &dyn Observer,
+) -> Result<LearntSensor, MapError> {
+    let (found, warp) =
+        rayon::join(|| observe(graph, sets, points, observer), || warp::warp(counts, graph, members, points));
+    let found = found?;
+    let sensor = SensorModel {
+        range: found.sensor.range,
+        edge: found.sensor.edge,
+        detectability: found.sensor.detectability,
+        outliers: found.outliers,
+        warp: warp?,
+    };
+    Ok(LearntSensor { sensor, detectability: found.detectability, deviation: found.deviation })
 }
 
 #[cfg(test)]

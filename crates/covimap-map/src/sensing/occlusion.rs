@@ -24,7 +24,7 @@ const FEWEST: f64 = 10.0;
 /// `n_ij = min(n_i p_j, n_j p_i)` times that share is to be expected.
 ///
 /// Time `O(n k)` for `k` landmarks within reach.
-pub(super) fn pairs(
+pub(crate) fn pairs(
     counts: &CoVisibility,
     members: &[u32],
     points: &[Point],

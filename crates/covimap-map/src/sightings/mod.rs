@@ -26,6 +26,7 @@ mod check;
 mod csv;
 mod format;
 mod interner;
+mod join;
 mod jsonl;
 mod lines;
 mod problem;

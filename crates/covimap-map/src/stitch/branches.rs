@@ -18,7 +18,7 @@ use crate::{Hinge, RegionCover, SeamReport, SeamsReport};
 
 /// Log-likelihood ratio from which on a side is sure. Local maps that are folded give false evidence, up to
 /// about 20 in corridors as narrow as the sensor sees far; elsewhere that of right sides is several times this.
-const SURE: f64 = 30.0;
+pub(crate) const SURE: f64 = 30.0;
 /// Trust below which a seam counts as dropped.
 const DROPPED: f64 = 0.01;
 

@@ -19,13 +19,14 @@ mod seams;
 use covimap_embed::{Point, RelativeFrame, Similarity, SynchroniseOptions, synchronise};
 
 use crate::{LinkGraph, LocalMap, MapError, RegionCover, SeamsReport};
+pub(crate) use branches::SURE;
 use seams::Seam;
 pub(crate) use seams::flatness;
 
 /// Weight of a landmark's place in the region whose core it is, relative to other regions.
 const CORE_WEIGHT: f64 = 4.0;
 /// Misfit, in map units, below which seams are not told apart in weight.
-const LEAST_MISFIT: f64 = 0.03;
+pub(crate) const LEAST_MISFIT: f64 = 0.03;
 
 /// The maps of all regions in one frame.
 pub(crate) struct Stitched {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::LandmarkNames;
 use crate::{BuildReport, ChartFit, MapperParams, SensorModel, SightLines};
 
 /// Three landmarks in a row, aligned.
