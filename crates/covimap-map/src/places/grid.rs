@@ -38,10 +38,7 @@ pub(super) fn sum(lanes: Lanes) -> f64 {
 /// Runs arithmetic over rows with the widest registers that the processor has. Only what is inlined gains by it.
 #[inline]
 pub(super) fn wide<R>(arithmetic: impl FnOnce() -> R) -> R {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || arithmetic(),
-    )
+    pulp::Arch::new().dispatch(arithmetic)
 }
 
 /// Where a landmark lies relative to a grid.
