@@ -2,8 +2,8 @@
 
 use crate::angle::Angle;
 use crate::error::SimError;
-use crate::geometry::Pose;
-use crate::motion::Walker;
+use crate::geometry::{Point, Pose};
+use crate::motion::{Walker, bearing};
 use crate::seed::{Stream, stream};
 use crate::sensor::Observer;
 use crate::spec::RunSpec;
@@ -30,6 +30,7 @@ pub struct Rover<'w> {
     pose: Pose,
     longest: f64,
     seen: Vec<u32>,
+    landmarks: &'w [Point],
 }
 
 impl<'w> Rover<'w> {
@@ -43,7 +44,14 @@ impl<'w> Rover<'w> {
         let mut walker = Walker::new(world, spec.step, stream(seed, Stream::Motion))?;
         let observer = Observer::new(world, &spec.sensor, spec.errors, seed)?;
         let pose = walker.start();
-        Ok(Self { walker, observer, pose, longest: spec.step.longest, seen: Vec::new() })
+        Ok(Self {
+            walker,
+            observer,
+            pose,
+            longest: spec.step.longest,
+            seen: Vec::new(),
+            landmarks: world.landmarks(),
+        })
     }
 
     /// Where it truly is: for whoever judges, not for whoever steers.
@@ -56,6 +64,24 @@ impl<'w> Rover<'w> {
     pub fn look(&mut self) -> &[u32] {
         self.observer.observe(self.pose, &mut self.seen);
         &self.seen
+    }
+
+    /// Takes a step on and on in about the last direction, as [`crate::Motion::Wander`] does: the same seed and
+    /// settings give the same way.
+    pub fn wander(&mut self) {
+        self.pose = self.walker.step(self.pose, self.pose.heading);
+    }
+
+    /// Takes a step in about the direction of a landmark that the last look showed, as the settings of steps say,
+    /// and round whatever is in the way. Tells whether the landmark was in that look: of others the robot does not know
+    /// the direction, and stays.
+    pub fn approach(&mut self, landmark: u32) -> bool {
+        let in_sight = self.seen.binary_search(&landmark).is_ok();
+        if in_sight {
+            let wanted = bearing(self.pose.at, self.landmarks[landmark as usize]);
+            self.pose = self.walker.step(self.pose, wanted);
+        }
+        in_sight
     }
 
     /// Turns on the spot, counter-clockwise.
