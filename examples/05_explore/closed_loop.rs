@@ -3,16 +3,14 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use covimap::plan::{Explorer, Localiser, Look, MapIndex};
+use covimap::plan::{Explorer, MapIndex};
 use covimap::{DistanceChoice, GlobalMap, Mapper, MapperParams, SightingLog, Silent};
 use covimap_sim::{Rover, RunSpec, World};
 
 /// Steps before the first map.
-const FIRST: usize = 10;
+const FIRST: usize = 20;
 /// A new map when the log has grown by this share.
 const GROWTH: f64 = 0.2;
-/// A new map also when a landmark that it lacks was seen so often.
-const UNMAPPED: u32 = 5;
 
 /// The landmarks that each step of the exploration shows.
 ///
@@ -28,71 +26,43 @@ pub fn explored(
     let ids: Vec<&str> = names.iter().collect();
     let mut rover = Rover::new(world, run, seed)?;
     let mut log: Vec<Vec<u32>> = Vec::with_capacity(steps);
-    let mut sightings = vec![0u32; ids.len()];
-    let mut explorer: Option<(Arc<Localiser>, Explorer)> = None;
+    let mut explorer: Option<(Arc<MapIndex>, Explorer)> = None;
     let mut mapped = 0;
     while log.len() < steps {
         let seen = rover.look().to_vec();
-        seen.iter().for_each(|&number| sightings[number as usize] += 1);
-        log.push(seen.clone());
-        let seen_ids = || seen.iter().map(|&number| ids[number as usize]);
-        let lacks = |localiser: &Localiser| {
-            let is_due = |&number: &u32| sightings[number as usize].is_multiple_of(UNMAPPED);
-            let due = seen.iter().filter(|number| is_due(number)).map(|&number| ids[number as usize]);
-            !localiser.look(due).unknown.is_empty()
-        };
-        let grown = log.len() as f64 >= (1.0 + GROWTH) * mapped as f64;
-        if log.len() >= FIRST && (grown || explorer.as_ref().is_some_and(|(localiser, _)| lacks(localiser))) {
+        let is_due = log.len() >= FIRST && log.len() as f64 >= (1.0 + GROWTH) * mapped as f64;
+        let map = is_due.then(|| map_of(&log, &ids, steering())).flatten();
+        if let Some(map) = map.filter(|map| map.sensing().is_some()) {
             mapped = log.len();
-            explorer = updated(explorer, &log, &ids)?;
+            let index = Arc::new(MapIndex::new(Arc::new(map)));
+            let explorer_now = match explorer.take() {
+                Some((_, mut explorer)) => {
+                    explorer.adopt(Arc::clone(&index))?;
+                    explorer
+                }
+                None => Explorer::new(Arc::clone(&index))?,
+            };
+            explorer = Some((index, explorer_now));
         }
-        let next = match &mut explorer {
-            Some((localiser, explorer)) => {
-                let look: Look = localiser.look(seen_ids());
-                let here = explorer.note(&look);
-                explorer.next(&look, &here)
-            }
-            // Without a map, on to what was seen least.
-            None => seen.iter().min_by_key(|&&n| sightings[n as usize]).map(|&n| ids[n as usize].to_owned()),
-        };
-        match next.and_then(|id| seen.iter().find(|&&number| ids[number as usize] == id)) {
-            Some(&number) => _ = rover.approach(number),
+        let next = explorer.as_mut().and_then(|(index, explorer)| {
+            let id = explorer.next(seen.iter().map(|&number| ids[number as usize]))?;
+            seen.iter().copied().find(|&number| ids[number as usize] == index.name(id))
+        });
+        match next {
+            Some(number) => _ = rover.approach(number),
             None => rover.wander(),
         }
+        log.push(seen);
     }
     Ok(log)
 }
 
-/// The explorer with a map of all that was seen; as it was where that makes no map to find places on.
-fn updated(
-    explorer: Option<(Arc<Localiser>, Explorer)>,
-    log: &[Vec<u32>],
-    ids: &[&str],
-) -> Result<Option<(Arc<Localiser>, Explorer)>, Box<dyn Error>> {
-    // A map to steer by needs no last polish.
+/// A map to steer by needs no last polish.
+fn steering() -> MapperParams {
     let mut params = MapperParams::default();
     params.auto.refine_iterations = 0;
     params.auto.distance = DistanceChoice::FixedLog;
-    let Some(localiser) =
-        map_of(log, ids, params).and_then(|map| Localiser::new(Arc::new(MapIndex::new(Arc::new(map)))).ok())
-    else {
-        return Ok(explorer);
-    };
-    let localiser = Arc::new(localiser);
-    let explorer = match explorer {
-        Some((_, mut explorer)) => {
-            explorer.adopt(Arc::clone(&localiser));
-            explorer
-        }
-        None => {
-            let mut explorer = Explorer::new(Arc::clone(&localiser));
-            for seen in &log[..log.len() - 1] {
-                explorer.note(&localiser.look(seen.iter().map(|&number| ids[number as usize])));
-            }
-            explorer
-        }
-    };
-    Ok(Some((localiser, explorer)))
+    params
 }
 
 /// The map of these steps; `None` if they show too little for any.

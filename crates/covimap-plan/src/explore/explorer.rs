@@ -1,150 +1,149 @@
-//! Steering by the map and by what is seen: always on to where the robot has been least.
+//! Steering by the map and by what is seen: wander, and be sent where little has been seen.
 //!
-//! A robot that can turn towards a landmark it sees needs to know but which one. Of every landmark in sight the
-//! explorer looks at the way there as far as three quarters of a range, and counts earlier looks around it:
+//! A robot that wanders straight on until something is in its way covers the floor quickly, and looks from everywhere, from along the walls
+//! too. What it lacks is that it never notices what it has missed. So it is left to wander, but for errands: as soon as
+//! the map has a landmark that was seen in less than three tenths of the steps of the median, the robot goes there over
+//! lines of sight, from landmark to landmark, and wanders on from there. Of several the greatest
 //!
-//! `V = sum_l sum_t exp(-|y_l - y_t|^2 / 2 h^2)`,  `h = 0.36 R`  (3)
+//! `(0.3 n_median / n_j) / (1 + d_j / 2 R)`  (3)
 //!
-//! `y_l` being three places on the way and `y_t` those of all looks so far, as far as the map can tell. The least `V` wins.
-//! What that gains: looks are spread evenly over the floor, new ground is entered in straight lines, and
-//! nothing is seen twice from one place as long as there are others. Counts of sightings are a worse guide, for a
-//! landmark in a corner that is seen seldom draws the robot there again and again, where it sees little else.
+//! is chosen, `d_j` being its distance from the middle of what is in sight. There is no errand before the median
+//! landmark was seen in eight steps: until then wandering on brings more.
 //!
-//! A landmark that the map does not have yet is new ground, and comes before all others.
+//! The robot need not know where it is: it must be able to turn towards a landmark that it sees, no more.
+//! What was tried before, and why even counts are no goal by themselves, is told in `docs/maths/exploration.md`.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use covimap_embed::{Correspondence, Point, ProcrustesOptions, Similarity, procrustes};
+use covimap_embed::Point;
 use covimap_map::LandmarkId;
 
-use crate::{Localiser, Location, Look, MapIndex};
+use crate::{MapIndex, PlanError, RoadParams, Roads};
 
-/// Width `h` of a place that has been looked from, in ranges.
-const WIDTH: f64 = 0.36;
-/// Places on the way to a landmark, in ranges.
-const AHEAD: [f64; 3] = [0.25, 0.5, 0.75];
+/// A landmark seen in less than this share of the steps that show the median landmark is worth an errand.
+const SELDOM: f64 = 0.3;
+/// Steps that must have shown the median landmark before the first errand.
+const ENOUGH: u32 = 8;
+/// An errand is done when so many looks have shown its goal.
+const LOOKS: u32 = 5;
+/// Looks between two errands.
+const REST: u32 = 10;
+/// An errand is given up after so many looks, and so many more for every range of the way.
+const PATIENCE: (f64, f64) = (12.0, 7.0);
 
-/// A look that was made.
+/// On its way to a landmark.
 #[derive(Debug, Clone)]
-struct Visit {
-    component: u32,
-    place: Point,
-    /// Landmarks of the component that it showed.
-    seen: Vec<LandmarkId>,
+struct Errand {
+    /// The way, the goal first.
+    way: Vec<LandmarkId>,
+    /// Looks that may still show the goal.
+    looks: u32,
+    /// Looks until it is given up.
+    patience: u32,
 }
 
-/// Where the robot has looked from, and where to go on.
+/// Sends a wandering robot where little has been seen.
 #[derive(Debug, Clone)]
 pub struct Explorer {
-    localiser: Arc<Localiser>,
-    /// Every look that the map could place.
-    visits: Vec<Visit>,
+    index: Arc<MapIndex>,
+    /// Steps that show each landmark, those since the map was made included.
+    sightings: Vec<u32>,
+    errand: Option<Errand>,
+    /// Looks to come without an errand.
+    rest: u32,
 }
 
 impl Explorer {
-    /// Has not looked anywhere yet.
-    #[must_use]
-    pub fn new(localiser: Arc<Localiser>) -> Self {
-        Self { localiser, visits: Vec::new() }
-    }
-
-    /// Goes on with a newer map of the same landmarks.
+    /// Begins with a map of all looks so far.
     ///
-    /// A look stays where it was as against the landmarks that it showed: their mean moves with the new map, and
-    /// the way from there to the place turns, and grows, as the component does as a whole. Looks of which the new map has
-    /// no landmark are forgotten. `O(n log n + t)` for `n` landmarks and `t` looks.
-    pub fn adopt(&mut self, localiser: Arc<Localiser>) {
-        let [old, new] = [&self.localiser, &localiser].map(|localiser| localiser.index().as_ref());
-        let kept: Vec<Option<LandmarkId>> = old.map().names().iter().map(|name| new.lookup(name)).collect();
-        let frames = frames(old, new, &kept);
-        let moved = |visit: &Visit| {
-            let both = || visit.seen.iter().filter_map(|id| Some((*id, kept[id.index()]?)));
-            let component = new.placed(both().next()?.1).component;
-            let both: Vec<_> = both().filter(|(_, id)| new.placed(*id).component == component).collect();
-            let [from, to] = [
-                middle(both.iter().map(|(id, _)| old.placed(*id).position)),
-                middle(both.iter().map(|(_, id)| new.placed(*id).position)),
-            ];
-            let frame = frames.get(&(visit.component, component)).copied().flatten();
-            // As the frame carries the way; without one the place is the mean.
-            let way = frame.map_or([0.0; 2], |frame| {
-                let [tip, foot] = [visit.place, from].map(|point| frame.apply(point));
-                [tip[0] - foot[0], tip[1] - foot[1]]
-            });
-            let place = [to[0] + way[0], to[1] + way[1]];
-            Some(Visit { component, place, seen: both.into_iter().map(|(_, id)| id).collect() })
+    /// # Errors
+    /// [`PlanError::NoSensor`] for a map that does not know its sensor.
+    pub fn new(index: Arc<MapIndex>) -> Result<Self, PlanError> {
+        let map = index.map();
+        map.sensing().ok_or(PlanError::NoSensor { landmarks: map.len() })?;
+        let sightings = map.landmarks().iter().map(|placed| placed.sightings).collect();
+        Ok(Self { index, sightings, errand: None, rest: 0 })
+    }
+
+    /// Goes on with a newer map, of all looks so far again. An errand goes on if the new map has all landmarks of its way.
+    ///
+    /// # Errors
+    /// Those of [`Explorer::new`]; then everything is as it was.
+    pub fn adopt(&mut self, index: Arc<MapIndex>) -> Result<(), PlanError> {
+        let new = Self::new(index)?;
+        let renamed = |errand: Errand| {
+            let way = errand.way.iter().map(|&id| new.index.lookup(self.index.name(id)));
+            Some(Errand { way: way.collect::<Option<_>>()?, ..errand })
         };
-        self.visits = self.visits.iter().filter_map(moved).collect();
-        self.localiser = localiser;
+        let errand = self.errand.take().and_then(renamed);
+        *self = Self { errand, rest: self.rest, ..new };
+        Ok(())
     }
 
-    /// Takes note of a look, and tells where it was made. `O(m)` for `m` landmarks near.
-    pub fn note(&mut self, look: &Look) -> Location {
-        let location = self.localiser.locate(look);
-        if let Some(here) = location.best().filter(|_| !location.is_lost()) {
-            let index = self.localiser.index();
-            let seen = look.known.iter().copied().filter(|&id| index.placed(id).component == here.component);
-            let (component, place) = (here.component, here.position);
-            self.visits.push(Visit { component, place, seen: seen.collect() });
+    /// Takes in a look: the landmark of it towards which to go, or `None` to wander on. IDs that the map lacks are passed over.
+    /// `O(n)`, and when an errand begins the time of a route.
+    pub fn next<'a>(&mut self, seen: impl IntoIterator<Item = &'a str>) -> Option<LandmarkId> {
+        let mut seen: Vec<LandmarkId> = seen.into_iter().filter_map(|id| self.index.lookup(id)).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen.iter().for_each(|id| self.sightings[id.index()] += 1);
+        match &mut self.errand {
+            Some(errand) => {
+                errand.looks -= u32::from(seen.binary_search(&errand.way[0]).is_ok());
+                errand.patience -= 1;
+                if errand.looks == 0 || errand.patience == 0 {
+                    (self.errand, self.rest) = (None, REST);
+                }
+            }
+            None => self.rest = self.rest.saturating_sub(1),
         }
-        location
-    }
-
-    /// The ID of the landmark in the look towards which to go from there; `None` where the look shows none, or the robot is
-    /// lost: then any way is as good. `O(k t)` for `k` landmarks in the look and `t` looks before.
-    #[must_use]
-    pub fn next(&self, look: &Look, from: &Location) -> Option<String> {
-        if let Some(new) = look.unknown.first() {
-            return Some(new.clone());
+        if self.errand.is_none() && self.rest == 0 {
+            self.errand = self.begin(&seen);
         }
-        let here = from.best().filter(|_| !from.is_lost())?;
-        let index = self.localiser.index();
-        let placed = |id: &LandmarkId| index.placed(*id);
-        let there = look.known.iter().filter(|id| placed(id).component == here.component);
-        let ways =
-            there.map(|id| (id, self.looked_along(here.component, here.position, placed(id).position)));
-        let (best, _) = ways.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(index.name(*best).to_owned())
+        let way = &self.errand.as_ref()?.way;
+        let next = way.iter().copied().find(|id| seen.binary_search(id).is_ok());
+        if next.is_none() {
+            // Out of sight of the whole way.
+            (self.errand, self.rest) = (None, REST);
+        }
+        next
     }
 
-    /// Eq. (3).
-    fn looked_along(&self, component: u32, from: Point, to: Point) -> f64 {
-        let map = self.localiser.index().map();
-        let range = map.sensing().map_or(1.0, |sensing| sensing.sensor(component).range);
-        let way = [to[0] - from[0], to[1] - from[1]];
-        let length = way[0].hypot(way[1]);
-        let direction = if length > 0.0 { way.map(|c| c / length) } else { [0.0; 2] };
-        let here = self.visits.iter().filter(|visit| visit.component == component);
-        let at = |ahead: f64| [0, 1].map(|axis| from[axis] + ahead * range * direction[axis]);
-        let near = |(place, visit): (Point, Point)| {
-            let squared = (place[0] - visit[0]).powi(2) + (place[1] - visit[1]).powi(2);
-            (-squared / (2.0 * (WIDTH * range).powi(2))).exp()
+    /// The errand that is worth most, if there is any.
+    fn begin(&self, seen: &[LandmarkId]) -> Option<Errand> {
+        let component = self.index.placed(*seen.first()?).component;
+        let members = self.index.component(component).expect("a landmark of it was seen (bug in covimap)");
+        let sightings = |id: LandmarkId| self.sightings[id.index()];
+        let mut sorted: Vec<u32> = members.iter().map(|&id| sightings(id)).collect();
+        let middle = sorted.len() / 2;
+        let median = *sorted.select_nth_unstable(middle).1;
+        if median < ENOUGH {
+            return None;
+        }
+        let few = SELDOM * f64::from(median);
+        let place = |id: LandmarkId| self.index.placed(id).position;
+        let near: Vec<LandmarkId> =
+            seen.iter().copied().filter(|&id| self.index.placed(id).component == component).collect();
+        let here = [0, 1].map(|axis| near.iter().map(|&id| place(id)[axis]).sum::<f64>() / near.len() as f64);
+        let range =
+            self.index.map().sensing().expect("checked when made (bug in covimap)").sensor(component).range;
+        // Eq. (3).
+        let worth = |id: LandmarkId| {
+            few / f64::from(sightings(id)) / (1.0 + distance(here, place(id)) / (2.0 * range))
         };
-        here.flat_map(|visit| AHEAD.map(|ahead| near((at(ahead), visit.place)))).sum()
+        let goals = members.iter().copied().filter(|&id| f64::from(sightings(id)) < few);
+        let goal = goals.max_by(|&a, &b| worth(a).total_cmp(&worth(b)).then(b.cmp(&a)))?;
+        let start = near.into_iter().min_by(|&a, &b| {
+            let to_goal = |id: LandmarkId| distance(place(id), place(goal));
+            to_goal(a).total_cmp(&to_goal(b))
+        })?;
+        let route = Roads::new(&self.index, RoadParams::default()).ok()?.route(start, goal).ok()?;
+        let patience = PATIENCE.0 + PATIENCE.1 * route.length / range;
+        let way = route.landmarks.into_iter().rev().collect();
+        Some(Errand { way, looks: LOOKS, patience: patience as u32 })
     }
 }
 
-/// How every component of the old map lies in every component of the new one, where enough landmarks of the one went into
-/// the other.
-fn frames(
-    old: &MapIndex,
-    new: &MapIndex,
-    kept: &[Option<LandmarkId>],
-) -> BTreeMap<(u32, u32), Option<Similarity>> {
-    let mut pairs: BTreeMap<(u32, u32), Vec<Correspondence>> = BTreeMap::new();
-    for (before, after) in old.map().landmarks().iter().zip(kept) {
-        if let Some(after) = after.map(|id| new.placed(id)) {
-            let pair = Correspondence { source: before.position, target: after.position, weight: 1.0 };
-            pairs.entry((before.component, after.component)).or_default().push(pair);
-        }
-    }
-    let fit = |pairs: Vec<Correspondence>| procrustes(&pairs, ProcrustesOptions::default()).ok();
-    pairs.into_iter().map(|(key, pairs)| (key, fit(pairs).map(|fit| fit.target_from_source))).collect()
-}
-
-fn middle(points: impl ExactSizeIterator<Item = Point>) -> Point {
-    let count = points.len() as f64;
-    let sum = points.fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
-    sum.map(|c| c / count)
+fn distance(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
