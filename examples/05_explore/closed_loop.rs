@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use covimap::plan::{Explorer, MapIndex};
 use covimap::{DistanceChoice, GlobalMap, Mapper, MapperParams, SightingLog, Silent};
-use covimap_sim::{Rover, RunSpec, World};
+use covimap_sim::{Angle, Rover, RunSpec, World};
 
 /// Steps before the first map.
 const FIRST: usize = 20;
@@ -50,7 +50,7 @@ pub fn explored(
         });
         match next {
             Some(number) => _ = rover.approach(number),
-            None => rover.wander(),
+            None => rover.head(Angle::from_rad(0.0)),
         }
         log.push(seen);
     }

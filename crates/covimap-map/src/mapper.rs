@@ -7,6 +7,7 @@ use crate::classical;
 use crate::component::{ComponentMap, Evidence, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
+use crate::ranges;
 use crate::report::warnings;
 use crate::sensing;
 use crate::shape::Shape;
@@ -54,7 +55,7 @@ impl Mapper {
         }
         let split = self.params.auto.split_aliases;
         let mut map = if split {
-            let log = aliases::split(log, &aliases);
+            let log = aliases::split(log, &aliases)?;
             let counts = CoVisibility::count(&log, observer)?;
             self.build_counted(&log, counts, None, observer)?
         } else {
@@ -108,7 +109,7 @@ impl Mapper {
         };
         let components = graph.components();
         let sets = SeenSets::by_component(log, &components);
-        let maps: Vec<ComponentMap> = match self.params.method {
+        let mut maps: Vec<ComponentMap> = match self.params.method {
             Method::Auto => {
                 let known =
                     Known { log, counts: &counts, graph: &graph, components: &components, sets: &sets };
@@ -121,17 +122,24 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
+        let mut own: Vec<&mut Vec<Point>> = maps.iter_mut().map(|map| &mut map.points).collect();
+        let ranged = match self.params.method {
+            Method::Auto => ranges::fit(log, &components, &mut own),
+            Method::Classical => vec![None; components.len()],
+        };
         let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
         let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
         let landmarks = place(&counts, &graph, &components, &maps);
-        let report = report(&counts, &graph, honesty, &components, maps, &landmarks, log);
+        let mut report = report(&counts, &graph, honesty, &components, maps, &landmarks, log);
+        report.components.iter_mut().zip(ranged).for_each(|(component, ranged)| component.ranges = ranged);
         let sight_lines = SightLines::find(&landmarks, &counts, &graph, &components);
         let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
             .with_sight_lines(sight_lines)?;
-        match sensing {
-            Some(sensing) => map.with_sensing(sensing),
-            None => Ok(map),
-        }
+        let map = match sensing {
+            Some(sensing) => map.with_sensing(sensing)?,
+            None => map,
+        };
+        ranges::in_metres(map)
     }
 
     fn auto_components(
@@ -316,6 +324,7 @@ fn report(
             converged: map.converged,
             distances: map.distances,
             path_pull: map.path_pull,
+            ranges: None,
             seams,
         }
     };

@@ -66,10 +66,11 @@ impl<'w> Rover<'w> {
         &self.seen
     }
 
-    /// Takes a step on and on in about the last direction, as [`crate::Motion::Wander`] does: the same seed and
-    /// settings give the same way.
-    pub fn wander(&mut self) {
-        self.pose = self.walker.step(self.pose, self.pose.heading);
+    /// Takes a step in about the direction that is turned by this from the last one, as the settings of steps say, and
+    /// round whatever is in the way. With no turn at all this is [`crate::Motion::Wander`]: the same seed and settings
+    /// give the same way.
+    pub fn head(&mut self, by: Angle) {
+        self.pose = self.walker.step(self.pose, self.pose.heading + by.rad());
     }
 
     /// Takes a step in about the direction of a landmark that the last look showed, as the settings of steps say,

@@ -8,7 +8,8 @@
 //! `(0.3 n_median / n_j) / (1 + d_j / 2 R)`  (3)
 //!
 //! is chosen, `d_j` being its distance from the middle of what is in sight. There is no errand before the median
-//! landmark was seen in eight steps: until then wandering on brings more.
+//! landmark was seen in eight steps, nor as long as the robot keeps coming upon landmarks that the map lacks: until
+//! then wandering on brings more.
 //!
 //! The robot need not know where it is: it must be able to turn towards a landmark that it sees, no more.
 //! What was tried before, and why even counts are no goal by themselves, is told in `docs/maths/exploration.md`.
@@ -28,6 +29,8 @@ const ENOUGH: u32 = 8;
 const LOOKS: u32 = 5;
 /// Looks between two errands.
 const REST: u32 = 10;
+/// Looks without an errand after one that shows a landmark which the map lacks.
+const NEWS: u32 = 30;
 /// An errand is given up after so many looks, and so many more for every range of the way.
 const PATIENCE: (f64, f64) = (12.0, 7.0);
 
@@ -80,10 +83,14 @@ impl Explorer {
         Ok(())
     }
 
-    /// Takes in a look: the landmark of it towards which to go, or `None` to wander on. IDs that the map lacks are passed over.
+    /// Takes in a look: the landmark of it towards which to go, or `None` to wander on. IDs that the map lacks are news.
     /// `O(n)`, and when an errand begins the time of a route.
     pub fn next<'a>(&mut self, seen: impl IntoIterator<Item = &'a str>) -> Option<LandmarkId> {
-        let mut seen: Vec<LandmarkId> = seen.into_iter().filter_map(|id| self.index.lookup(id)).collect();
+        let found: Vec<Option<LandmarkId>> = seen.into_iter().map(|id| self.index.lookup(id)).collect();
+        if found.contains(&None) {
+            self.rest = self.rest.max(NEWS);
+        }
+        let mut seen: Vec<LandmarkId> = found.into_iter().flatten().collect();
         seen.sort_unstable();
         seen.dedup();
         seen.iter().for_each(|id| self.sightings[id.index()] += 1);
