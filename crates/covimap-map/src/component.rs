@@ -1,20 +1,21 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
+use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1};
 use rayon::prelude::*;
 
-use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
+use crate::distances::{ComponentSteps, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
     AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport,
-    Stage, StopParams, local_map,
+    Stage, local_map,
 };
 
-/// How many times larger the tolerance of the polish is after a round of learning distances: the next round moves
-/// landmarks by more.
-const LOOSER: f64 = 100.0;
+/// The polish before anything is learnt of the distances: the first law moves landmarks by more.
+const ROUGH: StopRule = StopRule { max_iterations: 40, tolerance: 1e-3 };
+/// The polish from one law to the next.
+const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -108,24 +109,28 @@ pub(crate) fn settle(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
-    let pairs = graph.to_pairs();
-    let start = shape.start(&pairs, start)?;
-    let polished = polish(&*shape.terms(&pairs)?, &start, params.polish_stop, observer)?;
-    observer.finished(Stage::Polish);
-
     begin(Stage::Distances, None, observer)?;
-    let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
-    let mut polished = Alternated::fixed(polished, pairs);
-    if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
-        let tolerance = LOOSER * params.polish_stop.tolerance;
-        let stop = StopParams { tolerance, ..params.polish_stop };
-        let polish = |pairs: &_, start: &_| polish(pairs, start, stop, observer);
-        polished = distances.alternate(polished, params.distance, polish)?;
+    let fixed = graph.to_pairs();
+    let mut start = shape.start(&fixed, start)?;
+    let distances = Distances::new(graph, &fixed, evidence.counts, evidence.members, evidence.steps, seed);
+    let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
+    let terms = shape.terms(&fixed)?;
+    let mut newton = Newton::new(&terms);
+    let mut law = None;
+    if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
+        start = polish(&mut newton, &fixed, &start, ROUGH, observer)?.points;
+        let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
+        (law, start) = distances.learn(start, &families, polish)?;
     }
+    let measured = distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 
-    let start = std::mem::take(&mut polished.embedding.points);
+    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
+    let pairs = measured.as_ref().map_or(&*terms, |measured| &measured.pairs);
+    let mut polished = polish(&mut newton, pairs, &start, params.polish_stop.rule(), observer)?;
+    observer.finished(Stage::Polish);
+
+    let start = std::mem::take(&mut polished.points);
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
         start
     } else {
@@ -134,11 +139,12 @@ pub(crate) fn settle(
         observer.finished(Stage::Refine);
         refined.points
     };
+    let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
-        stress1: stress1(&polished.pairs, &points),
-        iterations: polished.embedding.iterations,
-        converged: polished.embedding.termination == Termination::Converged,
-        distances: distances.map(|distances| distances.report(&polished, &points)),
+        stress1: stress1(measured.as_ref().map_or(&fixed, |measured| &measured.pairs), &points),
+        iterations: polished.iterations,
+        converged: polished.termination == Termination::Converged,
+        distances: distances.as_ref().map(|distances| distances.report(law.as_ref(), doubted, &points)),
         region: vec![0; points.len()],
         regions: 1,
         branch_of: vec![0],
@@ -156,12 +162,13 @@ fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<()
 
 /// Least stress over all terms, from a start.
 fn polish(
+    newton: &mut Newton,
     pairs: &PairDistances,
     start: &[Point],
-    stop: StopParams,
+    stop: StopRule,
     observer: &dyn Observer,
 ) -> Result<Embedding, MapError> {
-    let polished = newton_while(pairs, start, stop.rule(), || {
+    let polished = newton.minimise(pairs, start, stop, || {
         observer.advanced(1);
         !observer.interrupted()
     })?;
