@@ -122,7 +122,8 @@ pub(crate) fn settle(
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
         (law, start) = distances.learn(start, &families, polish)?;
     }
-    let measured = distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
+    let measured =
+        distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;

@@ -142,6 +142,42 @@ mod tests {
     }
 
     #[test]
+    fn without_turns_it_wanders_as_the_motion_does() {
+        let spec = SimSpec::large(Floor::Hall {}, 100, 40);
+        let world = World::new(&spec.world, 3).unwrap();
+        let walk = crate::Simulation::new(&world, &spec.run, 5).unwrap().record();
+        let mut rover = Rover::new(&world, &spec.run, 5).unwrap();
+        for step in walk.steps().take(300) {
+            assert_eq!((rover.pose(), rover.look()), (step.pose, step.seen));
+            rover.head(Angle::from_rad(0.0));
+        }
+    }
+
+    #[test]
+    fn it_comes_nearer_to_what_it_sees_and_knows_no_way_to_what_it_does_not() {
+        in_hall(|rover, world| {
+            let away = |rover: &Rover, number: u32| {
+                let ([x, y], at) = (world.landmarks()[number as usize], rover.pose().at);
+                (x - at[0]).hypot(y - at[1])
+            };
+            let seen = rover.look().to_vec();
+            let hidden = (0..100).find(|number| !seen.contains(number)).unwrap();
+            let before = rover.pose();
+            assert!(!rover.approach(hidden) && rover.pose() == before);
+            let far = *seen.iter().max_by(|&&a, &&b| away(rover, a).total_cmp(&away(rover, b))).unwrap();
+            let start = away(rover, far);
+            for _ in 0..3 {
+                rover.look();
+                if away(rover, far) < 0.2 {
+                    break;
+                }
+                rover.approach(far);
+            }
+            assert!(away(rover, far) < 0.8 * start, "{} from {start}", away(rover, far));
+        });
+    }
+
+    #[test]
     fn it_sees_what_is_near() {
         in_hall(|rover, world| {
             let at = rover.pose().at;
