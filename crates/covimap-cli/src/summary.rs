@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use covimap_embed::DistanceCurve;
-use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, Warning};
+use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, RangeReport, Warning};
 
 use crate::table;
 
@@ -32,10 +32,26 @@ pub fn of(report: &BuildReport) -> String {
             format_args!("about {:.2} % of the sightings misread, {aside} set aside", 100.0 * rate),
         );
     }
+    for (component, ranges) in report.components.iter().enumerate().take(COMPONENTS) {
+        if let Some(ranges) = &ranges.ranges {
+            add(&mut text, self::ranges(component, ranges));
+        }
+    }
     for warning in &report.warnings {
         add(&mut text, self::warning(warning));
     }
     text
+}
+
+fn ranges(component: usize, found: &RangeReport) -> String {
+    let RangeReport { ranges, steps, scale, scale_error, deviation, outliers } = found;
+    format!(
+        "component {component} in metres by {} of {}: a map unit is {scale:.4} ± {scale_error:.4} m, ranges are {deviation:.4} m \
+         off, {}",
+        counted(*ranges, "range"),
+        counted(*steps, "step"),
+        counted(*outliers, "outlier"),
+    )
 }
 
 /// The distance function, how it was chosen, and how distances in the map agree with it.
