@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod documents;
+mod exploration;
 mod golden;
 mod localisation;
 mod pipeline;

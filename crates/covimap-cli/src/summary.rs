@@ -3,7 +3,9 @@
 use std::fmt::Write;
 
 use covimap_embed::DistanceCurve;
-use covimap_map::{BuildReport, ComponentReport, DistanceReport, FamilyScore, UpdateReport, Warning};
+use covimap_map::{
+    BuildReport, ComponentReport, DistanceReport, FamilyScore, RangeReport, UpdateReport, Warning,
+};
 
 use crate::table;
 
@@ -35,6 +37,11 @@ pub fn of(report: &BuildReport) -> String {
             format_args!("about {:.2} % of the sightings misread, {aside} set aside", 100.0 * rate),
         );
     }
+    for (component, ranges) in report.components.iter().enumerate().take(COMPONENTS) {
+        if let Some(ranges) = &ranges.ranges {
+            add(&mut text, self::ranges(component, ranges));
+        }
+    }
     for warning in &report.warnings {
         add(&mut text, self::warning(warning));
     }
@@ -54,6 +61,17 @@ fn update(update: &UpdateReport) -> String {
         }
     }
     text
+}
+
+fn ranges(component: usize, found: &RangeReport) -> String {
+    let RangeReport { ranges, steps, scale, scale_error, deviation, outliers } = found;
+    format!(
+        "component {component} in metres by {} of {}: a map unit is {scale:.4} ± {scale_error:.4} m, ranges are {deviation:.4} m \
+         off, {}",
+        counted(*ranges, "range"),
+        counted(*steps, "step"),
+        counted(*outliers, "outlier"),
+    )
 }
 
 /// The distance function, how it was chosen, and how distances in the map agree with it.

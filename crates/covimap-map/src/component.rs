@@ -8,8 +8,8 @@ use crate::places::{SeenSets, Sensor, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
-    AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport,
-    Stage, local_map,
+    AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, RangeReport, Region, RegionCover,
+    SeamsReport, Stage, local_map,
 };
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
@@ -32,6 +32,8 @@ pub(crate) struct ComponentMap {
     pub iterations: usize,
     pub converged: bool,
     pub distances: Option<DistanceReport>,
+    /// What ranges have made of the map, if the log tells any.
+    pub ranges: Option<RangeReport>,
     pub basis: Basis,
 }
 
@@ -155,6 +157,7 @@ pub(crate) fn settle(
     };
     let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
+        ranges: None,
         stress1: stress1(measured.as_ref().map_or(&fixed, |measured| &measured.pairs), &points),
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,

@@ -24,6 +24,7 @@ pub mod output;
 mod params;
 mod places;
 mod progress;
+mod ranges;
 mod regions;
 mod report;
 mod sensing;
@@ -51,12 +52,14 @@ pub use params::{
     AutoParams, ClassicalParams, DistanceChoice, MapperParams, Method, Phi, RegionParams, StopParams,
 };
 pub use progress::{Observer, Silent, Stage};
+pub use ranges::RangeReport;
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Hinge, SeamReport, SeamsReport, UpdateReport, Warning};
 pub use sensing::{Sensing, SensorModel};
 pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
-    JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, SightingLog,
+    JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, Range,
+    SightingLog,
 };
 pub use state::MapState;
 pub use truth::Truth;

@@ -7,9 +7,11 @@ use crate::classical;
 use crate::component::{Basis, ComponentMap, Evidence, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
+use crate::ranges;
 use crate::report::warnings;
 use crate::sensing;
 use crate::shape::Shape;
+use crate::state::without_ranges;
 use crate::stitch::flatness;
 use crate::{
     BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
@@ -51,8 +53,9 @@ impl Mapper {
     /// As [`Mapper::build`], and keeps what is needed to go on when there are more steps: see [`MapState`].
     ///
     /// # Errors
-    /// As [`Mapper::build`].
+    /// As [`Mapper::build`], and [`MapError::RangesInState`] for a log with ranges.
     pub fn build_with_state(&self, log: SightingLog, observer: &dyn Observer) -> Result<MapState, MapError> {
+        without_ranges(&log)?;
         let counts = CoVisibility::count(&log, observer)?;
         let built = self.build_known(&log, counts, observer)?;
         Ok(MapState::new(log, built))
@@ -74,7 +77,7 @@ impl Mapper {
         }
         let split = self.params.auto.split_aliases;
         let mut built = if split {
-            let log = aliases::split(log, &aliases);
+            let log = aliases::split(log, &aliases)?;
             let split = CoVisibility::count(&log, observer)?;
             Built { counts, ..self.build_counted(&log, split, None, observer)? }
         } else {
@@ -141,6 +144,11 @@ impl Mapper {
                 })
                 .collect::<Result<_, MapError>>()?,
         };
+        if self.params.method == Method::Auto {
+            let mut own: Vec<&mut Vec<Point>> = maps.iter_mut().map(|map| &mut map.points).collect();
+            let ranged = ranges::fit(log, &components, &mut own);
+            maps.iter_mut().zip(ranged).for_each(|(map, ranged)| map.ranges = ranged);
+        }
         let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();
         let sensing = sensing::learn(&counts, &graph, &components, &charts, &sets, observer)?;
         let bases = maps.iter_mut().map(|map| std::mem::take(&mut map.basis)).collect();
@@ -163,10 +171,11 @@ impl Mapper {
         let sight_lines = SightLines::find(&landmarks, counts, graph, components);
         let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
             .with_sight_lines(sight_lines)?;
-        match sensing {
-            Some(sensing) => map.with_sensing(sensing),
-            None => Ok(map),
-        }
+        let map = match sensing {
+            Some(sensing) => map.with_sensing(sensing)?,
+            None => map,
+        };
+        ranges::in_metres(map)
     }
 
     pub(crate) fn auto_components(
@@ -290,6 +299,7 @@ fn classical_component(
         iterations: 0,
         converged: true,
         distances: None,
+        ranges: None,
     })
 }
 
@@ -362,6 +372,7 @@ fn report(
             converged: map.converged,
             distances: map.distances,
             path_pull: map.path_pull,
+            ranges: map.ranges,
             seams,
         }
     };

@@ -96,7 +96,8 @@ pub fn explain(index: &MapIndex, landmark: impl LandmarkRef) -> Result<Explanati
     Ok(explanation)
 }
 
-fn typical_deviation(index: &MapIndex, members: &[LandmarkId]) -> f64 {
+/// Median of the standard deviations of these landmarks.
+pub(crate) fn typical_deviation(index: &MapIndex, members: &[LandmarkId]) -> f64 {
     let mut deviations: Vec<f64> = members.iter().map(|&id| index.covariance_of(id).deviation()).collect();
     let middle = deviations.len() / 2;
     *deviations.select_nth_unstable_by(middle, f64::total_cmp).1

@@ -8,7 +8,7 @@
 //!   walk over them.
 //! - [`align()`]: the map in the frame and unit of known positions, distances or turns.
 //! - [`explain`]: what holds a landmark in its place, and what would help.
-//! - [`Localiser`]: where a robot is that sees these landmarks.
+//! - [`next_best`], [`forecast`], [`Explorer`]: where to go next so that the map gains most, and when to stop.
 //!
 //! # Example
 //! ```
@@ -39,6 +39,7 @@ mod confidence;
 mod delaunay;
 mod error;
 mod explain;
+mod explore;
 mod index;
 mod localise;
 mod names;
@@ -54,6 +55,7 @@ pub use charts::Near;
 pub use confidence::Covariance;
 pub use error::PlanError;
 pub use explain::{Advice, Explanation, Hold, explain};
+pub use explore::{ExploreParams, Explorer, Forecast, Goal, Reason, forecast, next_best};
 pub use index::MapIndex;
 pub use localise::{Localiser, Location, Look, Mode, TrackParams, Tracker};
 pub use names::LandmarkRef;

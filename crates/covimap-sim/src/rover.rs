@@ -2,8 +2,8 @@
 
 use crate::angle::Angle;
 use crate::error::SimError;
-use crate::geometry::Pose;
-use crate::motion::Walker;
+use crate::geometry::{Point, Pose};
+use crate::motion::{Walker, bearing};
 use crate::seed::{Stream, stream};
 use crate::sensor::Observer;
 use crate::spec::RunSpec;
@@ -30,6 +30,7 @@ pub struct Rover<'w> {
     pose: Pose,
     longest: f64,
     seen: Vec<u32>,
+    landmarks: &'w [Point],
 }
 
 impl<'w> Rover<'w> {
@@ -43,7 +44,14 @@ impl<'w> Rover<'w> {
         let mut walker = Walker::new(world, spec.step, stream(seed, Stream::Motion))?;
         let observer = Observer::new(world, &spec.sensor, spec.errors, seed)?;
         let pose = walker.start();
-        Ok(Self { walker, observer, pose, longest: spec.step.longest, seen: Vec::new() })
+        Ok(Self {
+            walker,
+            observer,
+            pose,
+            longest: spec.step.longest,
+            seen: Vec::new(),
+            landmarks: world.landmarks(),
+        })
     }
 
     /// Where it truly is: for whoever judges, not for whoever steers.
@@ -56,6 +64,25 @@ impl<'w> Rover<'w> {
     pub fn look(&mut self) -> &[u32] {
         self.observer.observe(self.pose, &mut self.seen);
         &self.seen
+    }
+
+    /// Takes a step in about the direction that is turned by this from the last one, as the settings of steps say, and
+    /// round whatever is in the way. With no turn at all this is [`crate::Motion::Wander`]: the same seed and settings
+    /// give the same way.
+    pub fn head(&mut self, by: Angle) {
+        self.pose = self.walker.step(self.pose, self.pose.heading + by.rad());
+    }
+
+    /// Takes a step in about the direction of a landmark that the last look showed, as the settings of steps say,
+    /// and round whatever is in the way. Tells whether the landmark was in that look: of others the robot does not know
+    /// the direction, and stays.
+    pub fn approach(&mut self, landmark: u32) -> bool {
+        let in_sight = self.seen.binary_search(&landmark).is_ok();
+        if in_sight {
+            let wanted = bearing(self.pose.at, self.landmarks[landmark as usize]);
+            self.pose = self.walker.step(self.pose, wanted);
+        }
+        in_sight
     }
 
     /// Turns on the spot, counter-clockwise.
@@ -111,6 +138,42 @@ mod tests {
             let steps = (0..1000).take_while(|_| rover.go(0.2)).count();
             assert!(steps < 100 && !rover.go(0.2), "{steps}");
             assert!(world.plan().bounds().contains(rover.pose().at));
+        });
+    }
+
+    #[test]
+    fn without_turns_it_wanders_as_the_motion_does() {
+        let spec = SimSpec::large(Floor::Hall {}, 100, 40);
+        let world = World::new(&spec.world, 3).unwrap();
+        let walk = crate::Simulation::new(&world, &spec.run, 5).unwrap().record();
+        let mut rover = Rover::new(&world, &spec.run, 5).unwrap();
+        for step in walk.steps().take(300) {
+            assert_eq!((rover.pose(), rover.look()), (step.pose, step.seen));
+            rover.head(Angle::from_rad(0.0));
+        }
+    }
+
+    #[test]
+    fn it_comes_nearer_to_what_it_sees_and_knows_no_way_to_what_it_does_not() {
+        in_hall(|rover, world| {
+            let away = |rover: &Rover, number: u32| {
+                let ([x, y], at) = (world.landmarks()[number as usize], rover.pose().at);
+                (x - at[0]).hypot(y - at[1])
+            };
+            let seen = rover.look().to_vec();
+            let hidden = (0..100).find(|number| !seen.contains(number)).unwrap();
+            let before = rover.pose();
+            assert!(!rover.approach(hidden) && rover.pose() == before);
+            let far = *seen.iter().max_by(|&&a, &&b| away(rover, a).total_cmp(&away(rover, b))).unwrap();
+            let start = away(rover, far);
+            for _ in 0..3 {
+                rover.look();
+                if away(rover, far) < 0.2 {
+                    break;
+                }
+                rover.approach(far);
+            }
+            assert!(away(rover, far) < 0.8 * start, "{} from {start}", away(rover, far));
         });
     }
 

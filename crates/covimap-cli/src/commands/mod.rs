@@ -6,6 +6,7 @@ mod check;
 mod demo;
 mod evaluate;
 mod explain;
+mod explore;
 mod export;
 mod info;
 mod locate;
@@ -55,6 +56,7 @@ enum Command {
     Relation(relation::Args),
     Route(route::Args),
     Explain(explain::Args),
+    Explore(explore::Args),
     Align(align::Args),
     Check(check::Args),
     Demo(demo::Args),
@@ -88,6 +90,7 @@ impl Cli {
             Command::Relation(args) => args.run(console),
             Command::Route(args) => args.run(),
             Command::Explain(args) => args.run(),
+            Command::Explore(args) => args.run(console),
             Command::Align(args) => args.run(console),
             Command::Check(args) => args.run(console),
             Command::Demo(args) => args.run(console),

@@ -162,3 +162,28 @@ fn the_map_of_a_log_elsewhere_comes_into_the_current_folder() {
     scratch.succeeds(&["build", data("mrclam-1.jsonl").to_str().unwrap(), "-q"]);
     assert_eq!(scratch.names(), ["mrclam-1.map.json"]);
 }
+
+#[test]
+fn ranges_make_the_map_metric() {
+    let scratch = Scratch::new();
+    // Posts at the corners of a grid of half a metre; the robot looks from the middle of every square and from some other places.
+    let mut log = String::new();
+    for step in 0..200 {
+        let place = [0.25 + 0.09 * f64::from(step % 20), 0.2 + 0.17 * f64::from(step / 20)];
+        let posts = (0..25).map(|k| (k, [0.5 * f64::from(k % 5), 0.5 * f64::from(k / 5)]));
+        let away = |at: [f64; 2]| (at[0] - place[0]).hypot(at[1] - place[1]);
+        let near: Vec<_> = posts.map(|(k, at)| (k, away(at))).filter(|post| post.1 < 0.8).collect();
+        let seen: Vec<_> = near.iter().map(|(k, _)| format!("\"P{k}\"")).collect();
+        let ranges: Vec<_> = near.iter().map(|(k, away)| format!("\"P{k}\": {away}")).collect();
+        log += &format!("{{\"seen\": [{}], \"ranges\": {{{}}}}}\n", seen.join(", "), ranges.join(", "));
+    }
+    scratch.file("posts.jsonl", log);
+    let said = scratch.succeeds(&["build", "posts.jsonl", "-o", "map.json"]);
+    assert!(said.stdout.contains("in metres by") || said.stderr.contains("in metres by"), "{}", said.stderr);
+    let near = scratch.succeeds(&["near", "map.json", "P12", "-k", "4", "--json"]).json();
+    for post in near["near"].as_array().unwrap() {
+        assert!((post["distance"].as_f64().unwrap() - 0.5).abs() < 0.01, "{near}");
+    }
+    scratch.file("bad.jsonl", "{\"seen\": [\"A\"]}\n{\"seen\": [\"A\"], \"ranges\": {\"A\": -2}}\n");
+    scratch.refuses(&["build", "bad.jsonl"], 3, "bad.jsonl:2: the range to `A` is -2; give metres above 0");
+}

@@ -1,4 +1,4 @@
-//! Questions about a map: `near`, `relation`, `route`, `explain`, and `align`.
+//! Questions about a map: `near`, `relation`, `route`, `explain`, `explore`, and `align`.
 
 use crate::scratch::Scratch;
 
@@ -210,4 +210,33 @@ fn locate_says_when_nothing_is_known() {
     scratch.file("pair.jsonl", "{\"seen\": [\"P\", \"Q\"]}\n".repeat(3));
     scratch.succeeds(&["build", "pair.jsonl", "-q", "-o", "pair.json"]);
     scratch.refuses(&["locate", "pair.json", "--seen", "P"], BAD_INPUT, "does not know its sensor");
+}
+
+#[test]
+fn explore_tells_where_to_look_and_whether_to_stop() {
+    let scratch = square_and_pair();
+    let found = scratch.succeeds(&["explore", "map.json", "--json"]).json();
+    let goals = found["goals"].as_array().unwrap();
+    assert!(!goals.is_empty() && goals.iter().all(|goal| goal["gain"].as_f64().unwrap() > 0.0), "{found}");
+    let error = found["error"].as_f64().unwrap();
+    assert_eq!(found["stop"], error <= 0.03);
+    // What is as good as asked needs no more; a tenth of the error a hundred times the steps.
+    let asked = |error: f64| {
+        scratch.succeeds(&["explore", "map.json", "--json", "--error", &error.to_string()]).json()
+    };
+    assert_eq!((&asked(error)["stop"], &asked(error)["more_steps"]), (&true.into(), &0.into()));
+    let steps = found["steps"].as_u64().unwrap();
+    let more = asked(error / 10.0)["more_steps"].as_u64().unwrap();
+    assert!(more.abs_diff(99 * steps) <= 1, "{more} of {steps}");
+    // From the square the pair is out of reach.
+    let from = scratch.succeeds(&["explore", "map.json", "--from", "A,B", "-k", "1", "--json"]).json();
+    assert_eq!((from["goals"].as_array().unwrap().len(), &from["goals"][0]["component"]), (1, &0.into()));
+    assert!(from["goals"][0]["distance"].as_f64().is_some());
+    let text = scratch.succeeds(&["explore", "map.json"]).stdout;
+    assert!(
+        text.starts_with("go to  component") && text.contains("of near triangles are expected"),
+        "{text}"
+    );
+    scratch.refuses(&["explore", "map.json", "--error", "0.5"], BAD_INPUT, "setting explore.error is 0.5");
+    scratch.refuses(&["explore", "map.json", "--looks", "0"], BAD_INPUT, "setting explore.looks is 0");
 }

@@ -16,10 +16,10 @@
 //! `O(n k^2)` for `n` landmarks with `k` partners each.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::report::aliases_warning;
-use crate::{CoVisibility, LandmarkId, SightingLog, Warning};
+use crate::{CoVisibility, LandmarkId, MapError, Range, SightingLog, Warning};
 
 /// Steps that must show two landmarks together: what is seen less often may be chance.
 const FEWEST_STEPS: u32 = 3;
@@ -125,7 +125,7 @@ pub(crate) fn warning(log: &SightingLog, aliases: &[Alias], split: bool) -> Warn
 }
 
 /// The log with a name of its own for every copy.
-pub(crate) fn split(log: &SightingLog, aliases: &[Alias]) -> SightingLog {
+pub(crate) fn split(log: &SightingLog, aliases: &[Alias]) -> Result<SightingLog, MapError> {
     let taken: FxHashSet<&str> = log.names().iter().collect();
     let names: Vec<Vec<String>> = aliases.iter().map(|alias| copies(log, alias, &taken)).collect();
     let step = |number: usize| {
@@ -136,7 +136,18 @@ pub(crate) fn split(log: &SightingLog, aliases: &[Alias]) -> SightingLog {
         };
         seen.iter().map(name).collect::<Vec<_>>()
     };
-    SightingLog::from_steps((0..log.steps()).map(step))
+    let renamed = SightingLog::from_steps((0..log.steps()).map(step));
+    if log.ranges().is_empty() {
+        return Ok(renamed);
+    }
+    let numbers: FxHashMap<&str, u32> = renamed.names().iter().zip(0..).collect();
+    let range = |range: &Range| {
+        let seen = log.step(range.step);
+        let place = seen.binary_search(&range.landmark).expect("a range is to what is seen (bug in covimap)");
+        Range { landmark: numbers[step(range.step)[place]], ..*range }
+    };
+    let ranges = log.ranges().iter().map(range).collect();
+    renamed.with_ranges(ranges)
 }
 
 impl Alias {

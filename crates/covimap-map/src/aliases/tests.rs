@@ -83,7 +83,7 @@ fn every_sighting_goes_to_the_copy_whose_company_is_there() {
         vec!["A"],
         vec!["d", "A#1"],
     ]);
-    let after = split(&log, &[alias]);
+    let after = split(&log, &[alias]).unwrap();
     let step =
         |t: usize| after.step(t).iter().map(|&i| after.names().name(LandmarkId(i))).collect::<Vec<_>>();
     // `A#1` is taken.

@@ -7,7 +7,7 @@ mod warnings;
 
 use serde::{Deserialize, Serialize};
 
-use crate::DistanceReport;
+use crate::{DistanceReport, RangeReport};
 pub(crate) use seams::joined_seams;
 pub use seams::{Hinge, SeamReport, SeamsReport};
 pub use update::UpdateReport;
@@ -51,6 +51,9 @@ pub struct ComponentReport {
     /// links and most sides are guesses, path lengths keep the map open.
     #[serde(default)]
     pub path_pull: f64,
+    /// What its ranges came to; none if the log has too few. Then positions are in metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ranges: Option<RangeReport>,
     /// How its regions hang together.
     #[serde(default)]
     pub seams: SeamsReport,

@@ -1,7 +1,7 @@
 //! Logs one after the other.
 
-use super::SightingLog;
 use super::interner::{Interner, NameHash};
+use super::{Range, SightingLog};
 use crate::LandmarkNames;
 
 impl SightingLog {
@@ -18,8 +18,11 @@ impl SightingLog {
         for ends in later.starts.windows(2) {
             seen[ends[0]..ends[1]].sort_unstable();
         }
+        let renumbered = |range: &Range| Range { landmark: numbers[range.landmark as usize], ..*range };
+        let mut ranges: Vec<Range> = later.ranges.iter().map(renumbered).collect();
+        ranges.sort_by_key(|range| (range.step, range.landmark));
         let (names, starts) = (names.into_names(), later.starts.clone());
-        Self { names, starts, seen, lines: later.lines, duplicates: later.duplicates }
+        Self { names, starts, seen, ranges, lines: later.lines, duplicates: later.duplicates }
     }
 
     /// This log and the steps of one that [`SightingLog::renumber`] made after it.
@@ -30,18 +33,20 @@ impl SightingLog {
         let mut starts = Vec::with_capacity(self.starts.len() + later.steps());
         starts.extend_from_slice(&self.starts);
         starts.extend(later.starts[1..].iter().map(|end| self.seen.len() + end));
+        let shifted = later.ranges.iter().map(|range| Range { step: self.steps() + range.step, ..*range });
         Self {
             names: later.names.clone(),
             starts,
             seen,
+            ranges: self.ranges.iter().copied().chain(shifted).collect(),
             lines: self.lines + later.lines,
             duplicates: self.duplicates + later.duplicates,
         }
     }
 
-    /// A log of steps that were numbered before: step t shows `seen[starts[t]..starts[t + 1]]`.
+    /// A log without ranges of steps that were numbered before: step t shows `seen[starts[t]..starts[t + 1]]`.
     pub(crate) fn from_numbers(names: LandmarkNames, starts: Vec<usize>, seen: Vec<u32>) -> Self {
-        Self { names, starts, seen, lines: 0, duplicates: 0 }
+        Self { names, starts, seen, ranges: Vec::new(), lines: 0, duplicates: 0 }
     }
 }
 
@@ -52,6 +57,17 @@ mod tests {
     #[test]
     fn logs_joined_are_the_log_that_was_cut() {
         let steps = [vec!["A", "B"], vec![], vec!["C", "A"], vec!["D", "B", "E"], vec!["E", "A"]];
+        let range = |step, landmark, metres| Range { step, landmark, metres };
+        let ranges = |log: SightingLog, of: &[(usize, &str, f64)]| {
+            let number = |id| log.names().iter().position(|name| name == id).unwrap() as u32;
+            let all = of.iter().map(|&(step, id, metres)| range(step, number(id), metres)).collect();
+            log.with_ranges(all).unwrap()
+        };
+        let [first, second] = [&steps[..2], &steps[2..]].map(SightingLog::from_steps);
+        let [first, second] =
+            [ranges(first, &[(0, "B", 1.0)]), ranges(second, &[(0, "A", 2.0), (0, "C", 3.0)])];
+        let joined = first.followed_by(&first.renumber(&second));
+        assert_eq!(joined.ranges(), [range(0, 1, 1.0), range(2, 0, 2.0), range(2, 2, 3.0)]);
         let whole = SightingLog::from_steps(&steps);
         for cut in 0..=steps.len() {
             let [first, second] = [&steps[..cut], &steps[cut..]].map(SightingLog::from_steps);

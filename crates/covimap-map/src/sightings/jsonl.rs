@@ -8,20 +8,34 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use super::lines::{Shown, excerpt};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
 /// Reads one line; `false` if it is blank.
-pub(super) fn parse_line<'a>(line: &'a str, ids: &mut Vec<Cow<'a, str>>) -> Result<bool, String> {
-    let start = ids.len();
-    if scan(line.as_bytes(), line, ids).is_some() {
+pub(super) fn parse_line<'a>(line: &'a str, shown: &mut Shown<'a>) -> Result<bool, String> {
+    let start = shown.ids.len();
+    if scan(line.as_bytes(), line, &mut shown.ids).is_some() {
         return Ok(true);
     }
-    ids.truncate(start);
+    shown.ids.truncate(start);
     if line.bytes().all(|byte| byte.is_ascii_whitespace()) {
         return Ok(false);
     }
-    ids.extend(parse(line)?);
+    let Step { seen, ranges } = parse(line)?;
+    for (id, metres) in ranges {
+        let place = seen.iter().position(|other| *other == id).ok_or_else(|| {
+            format!(
+                "a range to {}, which `seen` does not list; list it, or leave the range out",
+                excerpt(&id)
+            )
+        })?;
+        if !(metres > 0.0 && metres.is_finite()) {
+            return Err(format!("the range to {} is {metres}; give metres above 0", excerpt(&id)));
+        }
+        shown.ranges.push((start + place, metres));
+    }
+    shown.ids.extend(seen);
     Ok(true)
 }
 
@@ -186,15 +200,14 @@ const ENDS_PLAIN: [bool; 256] = {
 const ADVICE: &str = r#"a step is a line like {"t": 12.5, "seen": ["A", "B"]}"#;
 
 /// The IDs of a line, as `serde_json` reads it.
-fn parse(line: &str) -> Result<Vec<Cow<'_, str>>, String> {
-    let step: Step<'_> = serde_json::from_str(line).map_err(|error| {
+fn parse(line: &str) -> Result<Step<'_>, String> {
+    serde_json::from_str(line).map_err(|error| {
         let kind = if error.is_data() { "not a step" } else { "invalid JSON" };
         let place = format!(" at line {} column {}", error.line(), error.column());
         let text = error.to_string();
         let reason: String = text.strip_suffix(&place).unwrap_or(&text).chars().take(MAX_REASON).collect();
         format!("{kind}: {reason} at column {}; {ADVICE}", error.column())
-    })?;
-    Ok(step.seen)
+    })
 }
 
 /// Characters of a parser's message that are passed on: it may quote the input.
@@ -202,6 +215,8 @@ const MAX_REASON: usize = 200;
 
 struct Step<'a> {
     seen: Vec<Cow<'a, str>>,
+    /// Metres to some of those seen.
+    ranges: Vec<(Cow<'a, str>, f64)>,
 }
 
 impl<'de: 'a, 'a> Deserialize<'de> for Step<'a> {
@@ -220,7 +235,7 @@ impl<'de> Visitor<'de> for StepVisitor {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let (mut seen, mut time) = (None, false);
+        let (mut seen, mut ranges, mut time) = (None, None, false);
         while let Some(key) = map.next_key::<Cow<'de, str>>()? {
             match key.as_ref() {
                 "seen" if seen.is_some() => return Err(A::Error::duplicate_field("seen")),
@@ -230,12 +245,15 @@ impl<'de> Visitor<'de> for StepVisitor {
                     map.next_value::<Time>()?;
                     time = true;
                 }
+                "ranges" if ranges.is_some() => return Err(A::Error::duplicate_field("ranges")),
+                "ranges" => ranges = Some(map.next_value::<Ranges<'de>>()?.0),
                 _ => {
                     map.next_value::<IgnoredAny>()?;
                 }
             }
         }
-        seen.map(|seen| Step { seen }).ok_or_else(|| A::Error::missing_field("seen"))
+        let ranges = ranges.unwrap_or_default();
+        seen.map(|seen| Step { seen, ranges }).ok_or_else(|| A::Error::missing_field("seen"))
     }
 }
 
@@ -245,6 +263,35 @@ impl<'de> Visitor<'de> for StepVisitor {
 enum Time {
     Number(#[expect(dead_code, reason = "only its type matters")] f64),
     Missing(()),
+}
+
+struct Ranges<'a>(Vec<(Cow<'a, str>, f64)>);
+
+impl<'de: 'a, 'a> Deserialize<'de> for Ranges<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(RangesVisitor)
+    }
+}
+
+struct RangesVisitor;
+
+impl<'de> Visitor<'de> for RangesVisitor {
+    type Value = Ranges<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("`ranges` to be an object of metres by ID")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut ranges: Vec<(Cow<'de, str>, f64)> = Vec::new();
+        while let Some(Id(id)) = map.next_key()? {
+            if ranges.iter().any(|other| other.0 == id) {
+                return Err(A::Error::custom(format_args!("two ranges to `{id}`")));
+            }
+            ranges.push((id, map.next_value()?));
+        }
+        Ok(Ranges(ranges))
+    }
 }
 
 struct Ids<'a>(Vec<Cow<'a, str>>);

@@ -10,8 +10,24 @@ use super::tokens::Tokens;
 /// Longest ID in bytes: 4 KiB. A longer one is an error.
 pub const MAX_ID_BYTES: usize = 4096;
 
-/// Reads one line and appends its IDs; `false` if the line is no step, and says what is wrong.
-pub(super) type LineParser = for<'a> fn(&'a str, &mut Vec<Cow<'a, str>>) -> Result<bool, String>;
+/// Reads one line and appends what it shows; `false` if the line is no step, and says what is wrong.
+pub(super) type LineParser = for<'a> fn(&'a str, &mut Shown<'a>) -> Result<bool, String>;
+
+/// What lines show.
+#[derive(Debug, Default)]
+pub(super) struct Shown<'a> {
+    pub ids: Vec<Cow<'a, str>>,
+    /// Place in `ids` and metres of every range.
+    pub ranges: Vec<(usize, f64)>,
+}
+
+impl Shown<'_> {
+    /// Takes back all but the first IDs.
+    pub fn truncate(&mut self, ids: usize) {
+        self.ids.truncate(ids);
+        self.ranges.retain(|range| range.0 < ids);
+    }
+}
 
 /// What holds for all lines of a log.
 #[derive(Debug, Clone, Copy)]
@@ -23,25 +39,25 @@ pub(super) struct Rules {
 /// Makes steps of a block in which every line stands for itself.
 pub(super) fn tokenise(block: &Block, known: &Interner, parse: LineParser, rules: Rules) -> Tokens {
     let mut tokens = Tokens::default();
-    let (mut ids, mut ends) = (Vec::new(), Vec::new());
+    let (mut shown, mut ends) = (Shown::default(), Vec::new());
     let problems = each_line(block, rules, |line| {
-        let start = ids.len();
-        let step = parse(line, &mut ids).and_then(|is_step| {
-            ids[start..].iter().try_for_each(|id| check_id(id))?;
+        let start = shown.ids.len();
+        let step = parse(line, &mut shown).and_then(|is_step| {
+            shown.ids[start..].iter().try_for_each(|id| check_id(id))?;
             Ok(is_step)
         });
         match step {
-            Ok(true) => ends.push(ids.len()),
-            _ => ids.truncate(start),
+            Ok(true) => ends.push(shown.ids.len()),
+            _ => shown.truncate(start),
         }
-        if ids.len() >= IDS_AT_ONCE {
-            tokens.push_steps(known, &ids, &ends);
-            ids.clear();
+        if shown.ids.len() >= IDS_AT_ONCE {
+            tokens.push_steps(known, &shown, &ends);
+            shown.truncate(0);
             ends.clear();
         }
         step.map(drop)
     });
-    tokens.push_steps(known, &ids, &ends);
+    tokens.push_steps(known, &shown, &ends);
     tokens.problems = problems;
     tokens
 }

@@ -14,7 +14,8 @@
 //!   most [`MAX_LINE_BYTES`] bytes. Compression by gzip or zstd is seen and undone.
 //! - A step in which nothing was seen is `{"seen": []}` or a blank line of plain text; CSV cannot
 //!   say it. Blank lines of JSONL and CSV mean nothing.
-//! - JSONL: `t` may be missing or null; other keys are ignored. CSV: other columns are ignored.
+//! - JSONL: `t` may be missing or null; `"ranges": {"A": 1.25}` gives the distance in metres from the robot to some of
+//!   those seen; other keys are ignored. CSV: other columns are ignored.
 //!
 //! # Memory and speed
 //!
@@ -65,15 +66,28 @@ use tokens::LogBuilder;
 /// assert_eq!(log.summary().duplicates, 1);
 /// # Ok::<(), covimap_map::MapError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SightingLog {
     names: LandmarkNames,
     /// Step t: `starts[t]..starts[t + 1]` of `seen`.
     starts: Vec<usize>,
     /// Landmarks, ascending within a step.
     seen: Vec<u32>,
+    /// By step and landmark.
+    ranges: Vec<Range>,
     lines: u64,
     duplicates: u64,
+}
+
+/// How far a landmark was from the robot, where the log tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Step that shows the landmark, counted from 0.
+    pub step: usize,
+    /// Number of the landmark.
+    pub landmark: u32,
+    /// Distance from the robot, metres, `> 0`.
+    pub metres: f64,
 }
 
 /// What a log holds, in numbers.
@@ -160,10 +174,12 @@ impl SightingLog {
     }
 
     fn from_builder(builder: LogBuilder, lines: u64) -> Self {
-        let LogBuilder { names, mut seen, mut starts, duplicates } = builder;
+        let LogBuilder { names, mut seen, mut starts, mut ranges, duplicates } = builder;
+        ranges.sort_by_key(|range| (range.step, range.landmark));
+        ranges.shrink_to_fit();
         seen.shrink_to_fit();
         starts.shrink_to_fit();
-        Self { names: names.into_names(), starts, seen, lines, duplicates }
+        Self { names: names.into_names(), starts, seen, ranges, lines, duplicates }
     }
 
     fn with_steps(self, sources: impl FnOnce() -> String) -> Result<Self, MapError> {
@@ -196,6 +212,30 @@ impl SightingLog {
     #[must_use]
     pub fn step(&self, step: usize) -> &[u32] {
         &self.seen[self.starts[step]..self.starts[step + 1]]
+    }
+
+    /// The log with these ranges instead of its own, in any order.
+    ///
+    /// # Errors
+    ///
+    /// [`MapError::BadRange`] for one to a landmark that its step does not show, or that is not positive and finite.
+    pub fn with_ranges(mut self, mut ranges: Vec<Range>) -> Result<Self, MapError> {
+        let is_seen = |range: &Range| {
+            range.step < self.steps() && self.step(range.step).binary_search(&range.landmark).is_ok()
+        };
+        let is_good = |range: &Range| is_seen(range) && range.metres > 0.0 && range.metres.is_finite();
+        if let Some(&Range { step, landmark, metres }) = ranges.iter().find(|range| !is_good(range)) {
+            return Err(MapError::BadRange { step, landmark, metres });
+        }
+        ranges.sort_by_key(|range| (range.step, range.landmark));
+        self.ranges = ranges;
+        Ok(self)
+    }
+
+    /// All ranges, by step and landmark; none unless the log tells some.
+    #[must_use]
+    pub fn ranges(&self) -> &[Range] {
+        &self.ranges
     }
 
     /// All steps in time order.

@@ -3,8 +3,10 @@
 
 use std::borrow::Cow;
 
+use super::lines::Shown;
+
 /// Reads one line; it always is a step.
-pub(super) fn parse_line<'a>(line: &'a str, ids: &mut Vec<Cow<'a, str>>) -> Result<bool, String> {
-    ids.extend(line.split_ascii_whitespace().map(Cow::Borrowed));
+pub(super) fn parse_line<'a>(line: &'a str, shown: &mut Shown<'a>) -> Result<bool, String> {
+    shown.ids.extend(line.split_ascii_whitespace().map(Cow::Borrowed));
     Ok(true)
 }

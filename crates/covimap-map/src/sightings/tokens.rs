@@ -9,7 +9,9 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use super::Range;
 use super::interner::{Interner, NameHash};
+use super::lines::Shown;
 use super::problem::Problems;
 
 /// The steps of one block.
@@ -20,6 +22,8 @@ pub(super) struct Tokens {
     seen: Vec<u32>,
     /// End of each step in `seen`.
     ends: Vec<usize>,
+    /// Steps are counted from the first of the block.
+    ranges: Vec<Range>,
     /// IDs that occurred again within their step.
     duplicates: u64,
     /// Lines of the block that were refused.
@@ -27,8 +31,10 @@ pub(super) struct Tokens {
 }
 
 impl Tokens {
-    /// Appends steps; step k has the IDs `ids[ends[k - 1]..ends[k]]`.
-    pub(super) fn push_steps(&mut self, known: &Interner, ids: &[Cow<'_, str>], ends: &[usize]) {
+    /// Appends steps; step k shows the IDs `ends[k - 1]..ends[k]`.
+    pub(super) fn push_steps(&mut self, known: &Interner, shown: &Shown<'_>, ends: &[usize]) {
+        let ids: &[Cow<'_, str>] = &shown.ids;
+        let first = self.ends.len();
         let hashes: Vec<_> = ids.iter().map(|id| NameHash::of(id)).collect();
         let mut numbers =
             known.find_all(&hashes, ids).zip(&hashes).zip(ids).map(|((found, &hash), id)| {
@@ -42,10 +48,19 @@ impl Tokens {
             self.ends.push(self.seen.len());
             from = end;
         }
+        for &(place, metres) in &shown.ranges {
+            let (hash, id) = (hashes[place], &ids[place]);
+            let landmark = known.find(hash, id).unwrap_or_else(|| known.len() + self.fresh.intern(hash, id));
+            let step = first + ends.partition_point(|&end| end <= place);
+            self.ranges.push(Range { step, landmark, metres });
+        }
     }
 
     /// Replaces provisional numbers (those from `known` on) by final ones.
     fn renumber(&mut self, known: u32, finals: &[u32]) {
+        for range in self.ranges.iter_mut().filter(|range| range.landmark >= known) {
+            range.landmark = finals[(range.landmark - known) as usize];
+        }
         let mut start = 0;
         for &end in &self.ends {
             let step = &mut self.seen[start..end];
@@ -84,12 +99,19 @@ pub(super) struct LogBuilder {
     pub(super) seen: Vec<u32>,
     /// Start of each step in `seen`, and the end of the last.
     pub(super) starts: Vec<usize>,
+    pub(super) ranges: Vec<Range>,
     pub(super) duplicates: u64,
 }
 
 impl LogBuilder {
     pub(super) fn new() -> Self {
-        Self { names: Interner::default(), seen: Vec::new(), starts: vec![0], duplicates: 0 }
+        Self {
+            names: Interner::default(),
+            seen: Vec::new(),
+            starts: vec![0],
+            ranges: Vec::new(),
+            duplicates: 0,
+        }
     }
 
     /// Adds a landmark to the step that is being made.
@@ -111,7 +133,8 @@ impl LogBuilder {
         let mut blocks = blocks;
         blocks.par_iter_mut().zip(&finals).for_each(|(block, finals)| block.renumber(known, finals));
         for block in blocks {
-            let offset = self.seen.len();
+            let (offset, step) = (self.seen.len(), self.starts.len() - 1);
+            self.ranges.extend(block.ranges.iter().map(|range| Range { step: step + range.step, ..*range }));
             self.seen.extend_from_slice(&block.seen);
             self.starts.extend(block.ends.iter().map(|end| offset + end));
             self.duplicates += block.duplicates;

@@ -40,6 +40,21 @@ impl<W: Write> JsonlWriter<W> {
         t: Option<f64>,
         ids: impl IntoIterator<Item = S>,
     ) -> io::Result<()> {
+        self.step_with_ranges(t, ids, [])
+    }
+
+    /// Writes a step with the distances in metres to some of the landmarks that it shows. Ranges that are not positive, or
+    /// to others, are written too, but not read again.
+    ///
+    /// # Errors
+    ///
+    /// As [`JsonlWriter::step`], also for a range that is NaN or infinite.
+    pub fn step_with_ranges<'r, S: AsRef<str>>(
+        &mut self,
+        t: Option<f64>,
+        ids: impl IntoIterator<Item = S>,
+        ranges: impl IntoIterator<Item = (&'r str, f64)>,
+    ) -> io::Result<()> {
         if let Some(t) = t.filter(|t| !t.is_finite()) {
             let what = format!("time {t} of a step is not finite; leave it out");
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
@@ -57,7 +72,21 @@ impl<W: Write> JsonlWriter<W> {
             }
             serde_json::to_writer(&mut self.out, id.as_ref())?;
         }
-        self.out.write_all(b"]}\n")
+        self.out.write_all(b"]")?;
+        let mut before: &[u8] = b", \"ranges\": {";
+        let mut any = false;
+        for (id, metres) in ranges {
+            if !metres.is_finite() {
+                let what = format!("range {metres} of a step is not finite; leave it out");
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+            }
+            self.out.write_all(before)?;
+            serde_json::to_writer(&mut self.out, id)?;
+            self.out.write_all(b": ")?;
+            serde_json::to_writer(&mut self.out, &metres)?;
+            (before, any) = (b", ", true);
+        }
+        self.out.write_all(if any { b"}}\n" } else { b"}\n" })
     }
 
     /// Writes what is still in the buffer and hands the output back.
@@ -82,8 +111,13 @@ impl SightingLog {
     /// What the output says.
     pub fn write_jsonl(&self, out: impl Write) -> io::Result<()> {
         let mut writer = JsonlWriter::new(out);
-        for step in self.iter() {
-            writer.step(None, step.iter().map(|&number| self.names().name(LandmarkId(number))))?;
+        let mut ranges = self.ranges();
+        let name = |number: u32| self.names().name(LandmarkId(number));
+        for (number, step) in self.iter().enumerate() {
+            let (own, later) = ranges.split_at(ranges.partition_point(|range| range.step <= number));
+            let own = own.iter().map(|range| (name(range.landmark), range.metres));
+            writer.step_with_ranges(None, step.iter().map(|&number| name(number)), own)?;
+            ranges = later;
         }
         writer.finish()?.flush()
     }

@@ -113,12 +113,19 @@ impl MapState {
     /// The same log, cut at the same places, gives the same map for any number of threads.
     ///
     /// # Errors
-    /// As [`crate::Mapper::build`] for the joined log, and [`MapError::TooManySteps`]. The state is then as it was.
+    /// As [`crate::Mapper::build`] for the joined log, [`MapError::TooManySteps`], and
+    /// [`MapError::RangesInState`] for steps with ranges. The state is then as it was.
     pub fn update(&mut self, later: &SightingLog, observer: &dyn Observer) -> Result<UpdateReport, MapError> {
+        without_ranges(later)?;
         let (next, report) = update::after(self, later, observer)?;
         *self = next;
         Ok(report)
     }
+}
+
+/// Refuses a log with ranges: its map is in metres, while a state goes on in map units.
+pub(crate) fn without_ranges(log: &SightingLog) -> Result<(), MapError> {
+    if log.ranges().is_empty() { Ok(()) } else { Err(MapError::RangesInState { ranges: log.ranges().len() }) }
 }
 
 /// The landmarks of every component of a map, ascending.

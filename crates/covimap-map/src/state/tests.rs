@@ -1,6 +1,6 @@
 use super::*;
 use crate::fixtures::{log_of, looks, scattered};
-use crate::{Mapper, MapperParams, Method, Silent};
+use crate::{Mapper, MapperParams, Method, Range, Silent};
 
 fn state() -> MapState {
     let looks = looks(&scattered(60, [2.0, 1.5], 3), [2.0, 1.5], 0.5, 600);
@@ -27,6 +27,19 @@ fn summed(mut body: Vec<u8>) -> Vec<u8> {
 
 fn refusal(bytes: &[u8]) -> String {
     MapState::parse(bytes, "s").unwrap_err().to_string()
+}
+
+#[test]
+fn ranges_are_refused_and_the_state_stays() {
+    let log = SightingLog::from_steps([["0", "1"]]);
+    let ranged = log.with_ranges(vec![Range { step: 0, landmark: 0, metres: 1.0 }]).unwrap();
+    let mapper = Mapper::new(MapperParams::default()).unwrap();
+    let refused = mapper.build_with_state(ranged.clone(), &Silent).unwrap_err();
+    assert!(matches!(refused, MapError::RangesInState { ranges: 1 }), "{refused}");
+    let mut state = state();
+    let before = state.clone();
+    assert!(matches!(state.update(&ranged, &Silent), Err(MapError::RangesInState { ranges: 1 })));
+    assert_eq!(state, before);
 }
 
 #[test]

@@ -100,6 +100,7 @@ impl Draft<'_> {
             iterations: report.iterations as usize,
             converged: report.converged,
             distances: report.distances.clone(),
+            ranges: None,
             basis: Default::default(),
         }
     }

@@ -72,6 +72,6 @@ impl<'w> Journey<'w> {
 }
 
 /// The direction from one place to another.
-fn bearing(from: Point, to: Point) -> f64 {
+pub(crate) fn bearing(from: Point, to: Point) -> f64 {
     (to[1] - from[1]).atan2(to[0] - from[0])
 }

@@ -78,7 +78,7 @@ impl<'w> Walker<'w> {
     ///
     /// If that way is blocked the robot turns by the least multiple of 45 degrees that frees it, give or take
     /// 22.5 degrees, to a random side first. If no direction is free it stays and turns round.
-    pub(super) fn step(&mut self, from: Pose, wanted: f64) -> Pose {
+    pub(crate) fn step(&mut self, from: Pose, wanted: f64) -> Pose {
         let mut uniform = |low: f64, high: f64| low + (high - low) * self.rng.random::<f64>();
         let heading = wanted + uniform(-self.step.turn.rad(), self.step.turn.rad());
         let length = uniform(self.step.shortest, self.step.longest);

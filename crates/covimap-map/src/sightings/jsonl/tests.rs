@@ -43,12 +43,33 @@ fn other_lines_are_left_to_the_parser() {
 
 #[test]
 fn a_bad_line_leaves_no_ids() {
-    let mut ids = vec![Cow::Borrowed("before")];
-    assert!(parse_line(r#"{"seen": ["A", "B"]"#, &mut ids).is_err());
-    assert!(!parse_line("  ", &mut ids).unwrap());
-    assert_eq!(ids, ["before"]);
-    assert!(parse_line(r#"{"seen": ["\u0041", 1]}"#, &mut ids).unwrap());
-    assert_eq!(ids, ["before", "A", "1"]);
+    let mut shown = Shown { ids: vec![Cow::Borrowed("before")], ranges: Vec::new() };
+    assert!(parse_line(r#"{"seen": ["A", "B"]"#, &mut shown).is_err());
+    assert!(!parse_line("  ", &mut shown).unwrap());
+    assert_eq!(shown.ids, ["before"]);
+    assert!(parse_line(r#"{"seen": ["\u0041", 1]}"#, &mut shown).unwrap());
+    assert_eq!(shown.ids, ["before", "A", "1"]);
+    assert!(shown.ranges.is_empty());
+}
+
+#[test]
+fn ranges_belong_to_what_is_seen() {
+    let mut shown = Shown { ids: vec![Cow::Borrowed("before")], ranges: Vec::new() };
+    let line = r#"{"seen": ["A", 7, "B"], "ranges": {"B": 1.5, "7": 2}, "t": 1}"#;
+    assert!(parse_line(line, &mut shown).unwrap());
+    assert_eq!(shown.ranges, [(3, 1.5), (2, 2.0)]);
+    let refused = |ranges: &str| {
+        parse_line(&format!(r#"{{"seen": ["A", "B"], "ranges": {ranges}}}"#), &mut Shown::default())
+            .unwrap_err()
+    };
+    assert!(refused(r#"{"C": 1}"#).starts_with("a range to `C`, which `seen` does not list"));
+    assert!(refused(r#"{"A": -1}"#).starts_with("the range to `A` is -1; give metres above 0"));
+    assert!(refused(r#"{"A": 0}"#).starts_with("the range to `A` is 0"));
+    assert!(refused(r#"{"A": 1, "A": 2}"#).contains("two ranges to `A`"));
+    assert!(refused(r#"{"A": NaN}"#).starts_with("invalid JSON"));
+    assert!(refused(r#"{"A": 1e999}"#).contains("number out of range"));
+    assert!(refused(r#"{"A": "near"}"#).starts_with("not a step"));
+    assert!(refused("[1, 2]").contains("`ranges` to be an object of metres by ID"));
 }
 
 /// Pieces of which lines are made, right ones and almost right ones.
@@ -108,7 +129,7 @@ proptest! {
     #[test]
     fn the_scanner_says_what_the_parser_says_or_nothing(line in line()) {
         if let Some(ids) = scanned(&line) {
-            prop_assert_eq!(Ok(ids), parse(&line));
+            prop_assert_eq!(Ok(ids), parse(&line).map(|step| step.seen));
         }
     }
 
@@ -118,7 +139,7 @@ proptest! {
     ) {
         let line = pieces.concat();
         if let Some(ids) = scanned(&line) {
-            prop_assert_eq!(Ok(ids), parse(&line));
+            prop_assert_eq!(Ok(ids), parse(&line).map(|step| step.seen));
         }
     }
 }

@@ -1,0 +1,131 @@
+//! Ranges: where the log tells how far landmarks were, the map becomes metric, and more exact.
+//!
+//! A range `r` of landmark i in step t is `s |x_i - y_t|` but for noise, with a scale `s` of the whole component, metres
+//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is the map that the
+//! sightings made, and the mean of what the step shows. Then, in turn,
+//!
+//! - every place moves to where the ranges of its step fit best (Gauss and Newton);
+//! - the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
+//! - every landmark moves to where the ranges to it fit best, held by the map as by a spring.
+//!
+//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2))^2` (Geman and McClure), `c` being three standard
+//! deviations of all that are not outliers: one that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//!
+//! # Complexity
+//! `O(m)` a round for `m` ranges.
+
+mod sweep;
+
+use covimap_embed::Point;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::component::put_in_frame;
+use crate::{ChartFit, GlobalMap, MapError, PlacedLandmark, Range, SightingLog};
+use sweep::{Reading, Sweep};
+
+/// Rounds of places, scale and landmarks.
+const ROUNDS: usize = 40;
+/// Ranges of a step that takes part, at least: two fix its place, the third tells something.
+const FEWEST: usize = 3;
+/// Misses of more than this many standard deviations are outliers.
+const OUTLIER: f64 = 4.0;
+
+/// What the ranges of a component came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RangeReport {
+    /// Ranges that took part.
+    pub ranges: u64,
+    /// Steps that they belong to.
+    pub steps: u64,
+    /// Metres a map unit.
+    pub scale: f64,
+    /// Standard error of the scale, metres a map unit.
+    pub scale_error: f64,
+    /// Standard deviation of the ranges about the map, metres, outliers left out.
+    pub deviation: f64,
+    /// Ranges that miss by more than four of these deviations.
+    pub outliers: u64,
+}
+
+/// Fits the points of every component to its ranges; `None` for components that have too few.
+///
+/// `components` lists the landmarks of each, ascending, and `charts` their points.
+pub(crate) fn fit(
+    log: &SightingLog,
+    components: &[Vec<u32>],
+    charts: &mut [&mut Vec<Point>],
+) -> Vec<Option<RangeReport>> {
+    let mut place = vec![(0, 0); log.names().len()];
+    for (component, members) in components.iter().enumerate() {
+        members.iter().enumerate().for_each(|(k, &member)| place[member as usize] = (component, k as u32));
+    }
+    let mut steps: Vec<Vec<Vec<Reading>>> = vec![Vec::new(); components.len()];
+    for ranges in log.ranges().chunk_by(|a, b| a.step == b.step) {
+        let mut left: Vec<&Range> = ranges.iter().collect();
+        while let Some(first) = left.first() {
+            let component = place[first.landmark as usize].0;
+            let (own, others): (Vec<&Range>, _) =
+                left.iter().partition(|range| place[range.landmark as usize].0 == component);
+            if own.len() >= FEWEST {
+                let reading = |range: &&Range| Reading {
+                    landmark: place[range.landmark as usize].1,
+                    metres: range.metres,
+                };
+                steps[component].push(own.iter().map(reading).collect());
+            }
+            left = others;
+        }
+    }
+    steps.into_iter().zip(charts).map(|(steps, points)| fit_component(&steps, points)).collect()
+}
+
+/// The map with every component that has ranges in metres.
+///
+/// # Errors
+/// Those of [`GlobalMap::with_positions`].
+pub(crate) fn in_metres(map: GlobalMap) -> Result<GlobalMap, MapError> {
+    let reports = || (0..).zip(&map.report().components);
+    let fit = |(component, report): (u32, &crate::ComponentReport)| {
+        let ranges = report.ranges.as_ref()?;
+        let (scale, rmse) = (ranges.scale, ranges.deviation);
+        Some(ChartFit { component, scale, anchors: 0, distances: ranges.ranges, rmse, handed: false })
+    };
+    let fits: Vec<ChartFit> = reports().filter_map(fit).collect();
+    if fits.is_empty() {
+        return Ok(map);
+    }
+    let scale =
+        |component: u32| fits.iter().find(|fit| fit.component == component).map_or(1.0, |fit| fit.scale);
+    let metres = |placed: &PlacedLandmark| placed.position.map(|c| scale(placed.component) * c);
+    let positions: Vec<Point> = map.landmarks().iter().map(metres).collect();
+    map.with_positions(&positions, fits)
+}
+
+/// `None`, and the points as they were, if no step takes part or all landmarks of the steps are in one place.
+fn fit_component(steps: &[Vec<Reading>], points: &mut Vec<Point>) -> Option<RangeReport> {
+    let mut sweep = Sweep::start(steps, points)?;
+    for _ in 0..ROUNDS {
+        sweep.place_steps();
+        sweep.fit_scale();
+        sweep.move_landmarks();
+    }
+    sweep.place_steps();
+    sweep.fit_scale();
+    let misses = sweep.misses();
+    let outliers = misses.par_iter().filter(|miss| miss.abs() > OUTLIER * sweep.deviation).count();
+    let report = RangeReport {
+        ranges: misses.len() as u64,
+        steps: steps.len() as u64,
+        scale: sweep.scale,
+        scale_error: sweep.scale_error(),
+        deviation: sweep.deviation,
+        outliers: outliers as u64,
+    };
+    *points = sweep.points;
+    put_in_frame(points, &mut []);
+    Some(report)
+}
+
+#[cfg(test)]
+mod tests;
