@@ -34,6 +34,7 @@ mod spring;
 mod starts;
 mod stress;
 mod synchronise;
+mod unfold;
 
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use disparity::{PairBounds, Transformation};
@@ -62,6 +63,7 @@ pub use spring::spring_embedding;
 pub use starts::{random_starts, torgerson_start};
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
+pub use unfold::{Unfolded, unfold};
 
 /// A position in the plane, `[x, y]`.
 pub type Point = [f64; 2];

@@ -1,6 +1,6 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1};
+use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1, unfold};
 use rayon::prelude::*;
 
 use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
@@ -52,7 +52,7 @@ pub(crate) fn map_component(
 ) -> Result<ComponentMap, MapError> {
     let (cover, stitched) = stitched(graph, params, observer)?;
     let shape = Shape::of(graph, &cover, &stitched);
-    let Stitched { points, branch_of, seams } = stitched;
+    let Stitched { points, branch_of, seams, .. } = stitched;
     let settled = settle(graph, evidence, points, shape, params, seed, observer)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
@@ -111,16 +111,24 @@ pub(crate) fn settle(
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = graph.to_pairs();
     let start = shape.start(&pairs, start)?;
-    let polished = polish(&*shape.terms(&pairs)?, &start, params.polish_stop, observer)?;
+    let mut polished = polish(&*shape.terms(&pairs)?, &start, params.polish_stop, observer)?;
+    if shape.pull == 0.0 {
+        let unfolded = unfold(&pairs, &polished.points)?;
+        if unfolded.mended > 0 {
+            polished = polish(&pairs, &unfolded.points, params.polish_stop, observer)?;
+        }
+    }
     observer.finished(Stage::Polish);
 
     begin(Stage::Distances, None, observer)?;
     let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
     let mut polished = Alternated::fixed(polished, pairs);
     if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
-        let tolerance = LOOSER * params.polish_stop.tolerance;
-        let stop = StopParams { tolerance, ..params.polish_stop };
-        let polish = |pairs: &_, start: &_| polish(pairs, start, stop, observer);
+        let polish = |pairs: &_, start: &_, last| {
+            let looser = if last { 1.0 } else { LOOSER };
+            let tolerance = looser * params.polish_stop.tolerance;
+            polish(pairs, start, StopParams { tolerance, ..params.polish_stop }, observer)
+        };
         polished = distances.alternate(polished, params.distance, polish)?;
     }
     observer.finished(Stage::Distances);

@@ -35,7 +35,7 @@ mod weights;
 
 use covimap_embed::{
     DistanceCurve, DistanceFamily, DistanceFunction, Embedding, Pair, PairDistances, Point,
-    StretchedExponential,
+    StretchedExponential, unfold,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -120,12 +120,13 @@ impl<'a> Distances<'a> {
         Some(Self { graph, counts: counts::of_links(graph, counts, members), sample, repetition })
     }
 
-    /// Alternates fit and polish, starting from the map of the fixed logarithm.
+    /// Alternates fit and polish, starting from the map of the fixed logarithm. Folds that learnt distances show
+    /// are undone before the last polish, which is told that it is the last.
     pub fn alternate(
         &self,
         start: Alternated,
         choice: DistanceChoice,
-        mut polish: impl FnMut(&PairDistances, &[Point]) -> Result<Embedding, MapError>,
+        mut polish: impl FnMut(&PairDistances, &[Point], bool) -> Result<Embedding, MapError>,
     ) -> Result<Alternated, MapError> {
         let families = match choice {
             DistanceChoice::FixedLog => return Ok(start),
@@ -133,12 +134,15 @@ impl<'a> Distances<'a> {
             DistanceChoice::Family(family) => vec![family],
         };
         let mut state = start;
-        for _ in 0..ROUNDS {
+        for round in 1..=ROUNDS {
+            if round == ROUNDS {
+                state.embedding.points = unfold(&state.pairs, &state.embedding.points)?.points;
+            }
             let points = &state.embedding.points;
             let chosen = choose(&families, &self.sample, &self.sampled_lengths(points), self.repetition);
             let Some((curve, scores)) = chosen.filter(|(curve, _)| self.has_extent(curve)) else { break };
             let (pairs, fit) = self.measure(curve, scores, &state);
-            let embedding = polish(&pairs, points)?;
+            let embedding = polish(&pairs, points, round == ROUNDS)?;
             state = Alternated { embedding, pairs, fit: Some(fit) };
         }
         Ok(state)
