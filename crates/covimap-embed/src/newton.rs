@@ -38,7 +38,7 @@ const LEAST_DAMPING: f64 = 1e-4;
 /// Steps that a factor serves.
 const LIFETIME: usize = 20;
 /// Share of the stress that a step must take away for the configuration to have moved far.
-const FAR: f64 = 1e-2;
+const FAR: f64 = 0.1;
 /// Share of the decrease promised by the slope that a step must keep (Armijo's condition).
 const KEPT: f64 = 1e-4;
 /// Shortenings of a step before it is given up: by then it is below rounding.

@@ -3,7 +3,7 @@
 use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1, unfold};
 use rayon::prelude::*;
 
-use crate::distances::{Alternated, ComponentSteps, DistanceReport, Distances};
+use crate::distances::{ComponentSteps, DistanceReport, Distances};
 use crate::places::{SeenSets, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
@@ -12,9 +12,9 @@ use crate::{
     Stage, StopParams, local_map,
 };
 
-/// How many times larger the tolerance of the polish is after a round of learning distances: the next round moves
-/// landmarks by more.
-const LOOSER: f64 = 100.0;
+/// Relative gain of a step at which the polish stops while distances are being learnt: the next law moves landmarks
+/// by more.
+const ROUGH: f64 = 1e-4;
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -108,32 +108,30 @@ pub(crate) fn settle(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
-    let pairs = graph.to_pairs();
-    let start = shape.start(&pairs, start)?;
-    let mut polished = polish(&*shape.terms(&pairs)?, &start, params.polish_stop, observer)?;
-    if shape.pull == 0.0 {
-        let unfolded = unfold(&pairs, &polished.points)?;
-        if unfolded.mended > 0 {
-            polished = polish(&pairs, &unfolded.points, params.polish_stop, observer)?;
-        }
-    }
-    observer.finished(Stage::Polish);
-
     begin(Stage::Distances, None, observer)?;
-    let distances = Distances::new(graph, evidence.counts, evidence.members, evidence.steps, seed);
-    let mut polished = Alternated::fixed(polished, pairs);
-    if let Some(distances) = distances.as_ref().filter(|_| shape.pull == 0.0) {
-        let polish = |pairs: &_, start: &_, last| {
-            let looser = if last { 1.0 } else { LOOSER };
-            let tolerance = looser * params.polish_stop.tolerance;
-            polish(pairs, start, StopParams { tolerance, ..params.polish_stop }, observer)
-        };
-        polished = distances.alternate(polished, params.distance, polish)?;
+    let fixed = graph.to_pairs();
+    let mut start = shape.start(&fixed, start)?;
+    let distances = Distances::new(graph, &fixed, evidence.counts, evidence.members, evidence.steps, seed);
+    let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
+    let mut law = None;
+    let rough = StopParams { tolerance: ROUGH, ..params.polish_stop };
+    if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
+        start = unfold(&fixed, &polish(&fixed, &start, rough, observer)?.points)?.points;
+        let polish = |pairs: &_, start: &_| polish(pairs, start, rough, observer);
+        (law, start) = distances.learn(start, &families, polish)?;
     }
+    let measured = distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 
-    let start = std::mem::take(&mut polished.embedding.points);
+    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
+    let pairs = measured.as_ref().map_or(&fixed, |measured| &measured.pairs);
+    if shape.pull == 0.0 {
+        start = unfold(pairs, &polish(pairs, &start, rough, observer)?.points)?.points;
+    }
+    let mut polished = polish(&*shape.terms(pairs)?, &start, params.polish_stop, observer)?;
+    observer.finished(Stage::Polish);
+
+    let start = std::mem::take(&mut polished.points);
     let points = if params.refine_iterations == 0 || graph.landmarks() < 3 {
         start
     } else {
@@ -142,11 +140,12 @@ pub(crate) fn settle(
         observer.finished(Stage::Refine);
         refined.points
     };
+    let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
-        stress1: stress1(&polished.pairs, &points),
-        iterations: polished.embedding.iterations,
-        converged: polished.embedding.termination == Termination::Converged,
-        distances: distances.map(|distances| distances.report(&polished, &points)),
+        stress1: stress1(pairs, &points),
+        iterations: polished.iterations,
+        converged: polished.termination == Termination::Converged,
+        distances: distances.as_ref().map(|distances| distances.report(law.as_ref(), doubted, &points)),
         region: vec![0; points.len()],
         regions: 1,
         branch_of: vec![0],

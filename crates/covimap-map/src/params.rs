@@ -103,6 +103,17 @@ pub enum DistanceChoice {
     Family(DistanceFamily),
 }
 
+impl DistanceChoice {
+    /// The families to fit; none if nothing is to be learnt.
+    pub(crate) fn families(self) -> Vec<DistanceFamily> {
+        match self {
+            Self::FixedLog => Vec::new(),
+            Self::Auto => DistanceFamily::ALL.to_vec(),
+            Self::Family(family) => vec![family],
+        }
+    }
+}
+
 /// Settings of `auto`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

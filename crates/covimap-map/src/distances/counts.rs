@@ -1,6 +1,6 @@
 //! What the log says of pairs of landmarks: all of it, and block of time by block of time for a sample.
 
-use covimap_embed::Observation;
+use covimap_embed::{Observation, PairDistances};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -61,18 +61,15 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// Draws links and counts them over the steps of their component, in one pass.
-    pub fn draw(graph: &LinkGraph, steps: &ComponentSteps, seed: u64) -> Self {
-        let total = graph.link_count();
+    /// Draws some of the links at these places of the list, and counts them over the steps of their component, in one
+    /// pass.
+    pub fn draw(pairs: &PairDistances, among: &[usize], steps: &ComponentSteps, seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut links = rand::seq::index::sample(&mut rng, total, total.min(SAMPLE)).into_vec();
+        let drawn = rand::seq::index::sample(&mut rng, among.len(), among.len().min(SAMPLE));
+        let mut links: Vec<usize> = drawn.into_iter().map(|k| among[k]).collect();
         links.sort_unstable();
-        let mut drawn = links.iter().copied().peekable();
-        let all = (0..graph.landmarks() as u32)
-            .flat_map(|i| graph.of(i).iter().filter(move |link| link.to > i).map(move |link| [i, link.to]));
-        let ends: Vec<[u32; 2]> =
-            all.enumerate().filter(|(k, _)| drawn.next_if_eq(k).is_some()).map(|(_, ends)| ends).collect();
-        let blocks = count_blocks(&ends, graph.landmarks(), steps);
+        let ends: Vec<[u32; 2]> = links.iter().map(|&link| pairs.pairs()[link]).map(|p| [p.i, p.j]).collect();
+        let blocks = count_blocks(&ends, pairs.objects(), steps);
         Self { links, ends, blocks }
     }
 

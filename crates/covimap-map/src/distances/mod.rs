@@ -6,7 +6,7 @@
 //! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
 //!
 //! # Algorithm
-//! A few rounds of
+//! A few rounds, all but the last on a few [`pieces`] of a large component, of
 //! 1. every family ([`covimap_embed::DistanceFamily`]) is fitted to the counts of either half of the
 //!    time - alternate blocks of steps - at the distances of the present map, and judged by the
 //!    likelihood of the counts of the other half ([`choice`]). Not by stress: a curve that
@@ -17,7 +17,8 @@
 //! 4. the polish, from the present map.
 //!
 //! # Complexity
-//! One pass over the log to count 40 000 sampled links, `O(links)` a round, and the polish.
+//! One pass over the log to count 40 000 sampled links, `O(links)`, and one polish of the component; those of
+//! the pieces take the same time however large it is.
 //!
 //! # Failure
 //! A component with fewer than three links a landmark has no report and keeps the logarithm. So does one
@@ -29,23 +30,24 @@
 
 mod choice;
 mod counts;
+mod pieces;
 mod shepard;
 mod steps;
 mod weights;
 
 use covimap_embed::{
     DistanceCurve, DistanceFamily, DistanceFunction, Embedding, Pair, PairDistances, Point,
-    StretchedExponential, unfold,
+    StretchedExponential,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::links::ALPHA;
-use crate::params::DistanceChoice;
 use crate::{CoVisibility, LinkGraph, MapError};
 pub use choice::FamilyScore;
 use choice::choose;
 use counts::{PairCount, Sample};
+use pieces::Pieces;
 pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
@@ -81,32 +83,36 @@ pub struct DistanceReport {
 
 /// What a log tells of the links of one component.
 pub(crate) struct Distances<'a> {
-    graph: &'a LinkGraph,
+    /// The links with the distances of the fixed logarithm.
+    pairs: &'a PairDistances,
     counts: Vec<PairCount>,
+    pieces: Pieces,
     sample: Sample,
     repetition: f64,
 }
 
-/// A curve in use.
-struct Fit {
+/// How the distances of links follow from their counts.
+pub(crate) struct Law {
     curve: DistanceCurve,
+    /// Factor that gives the distances of the curve the size of those of the fixed logarithm.
+    stretch: f64,
+    trust: Trust,
     scores: Vec<FamilyScore>,
-    misfit: f64,
-    doubted: f64,
 }
 
-/// A polished map, the problem it solves, and the curve that made its distances.
-pub(crate) struct Alternated {
-    pub embedding: Embedding,
+/// The links of a component, measured.
+pub(crate) struct Measured {
     pub pairs: PairDistances,
-    fit: Option<Fit>,
+    /// Share of the pairs that keep less than half of their weight.
+    pub doubted: f64,
 }
 
 impl<'a> Distances<'a> {
-    /// Counts the links of a component; `members[k]` is what the counts call landmark `k` of its graph.
-    /// `None` if there are too few of them to learn from.
+    /// Counts the links of a component, `pairs` being those of `graph`; `members[k]` is what the counts call
+    /// landmark `k` of the graph. `None` if there are too few of them to learn from.
     pub fn new(
-        graph: &'a LinkGraph,
+        graph: &LinkGraph,
+        pairs: &'a PairDistances,
         counts: &CoVisibility,
         members: &[u32],
         steps: &ComponentSteps,
@@ -115,60 +121,58 @@ impl<'a> Distances<'a> {
         if graph.link_count() < LINKS_A_LANDMARK * graph.landmarks() {
             return None;
         }
-        let sample = Sample::draw(graph, steps, seed);
+        let pieces = Pieces::of(graph, pairs);
+        let sample = Sample::draw(pairs, &pieces.links, steps, seed);
         let repetition = sample.repetition();
-        Some(Self { graph, counts: counts::of_links(graph, counts, members), sample, repetition })
+        Some(Self { pairs, counts: counts::of_links(graph, counts, members), pieces, sample, repetition })
     }
 
-    /// Alternates fit and polish, starting from the map of the fixed logarithm. Folds that learnt distances show
-    /// are undone before the last polish, which is told that it is the last.
-    pub fn alternate(
+    /// Alternates fit and polish, starting from the map of the fixed logarithm: the law, if there is one, and
+    /// the positions that the rounds lead to.
+    pub fn learn(
         &self,
-        start: Alternated,
-        choice: DistanceChoice,
-        mut polish: impl FnMut(&PairDistances, &[Point], bool) -> Result<Embedding, MapError>,
-    ) -> Result<Alternated, MapError> {
-        let families = match choice {
-            DistanceChoice::FixedLog => return Ok(start),
-            DistanceChoice::Auto => DistanceFamily::ALL.to_vec(),
-            DistanceChoice::Family(family) => vec![family],
-        };
-        let mut state = start;
-        for round in 1..=ROUNDS {
-            if round == ROUNDS {
-                state.embedding.points = unfold(&state.pairs, &state.embedding.points)?.points;
-            }
-            let points = &state.embedding.points;
-            let chosen = choose(&families, &self.sample, &self.sampled_lengths(points), self.repetition);
-            let Some((curve, scores)) = chosen.filter(|(curve, _)| self.has_extent(curve)) else { break };
-            let (pairs, fit) = self.measure(curve, scores, &state);
-            let embedding = polish(&pairs, points, round == ROUNDS)?;
-            state = Alternated { embedding, pairs, fit: Some(fit) };
+        mut points: Vec<Point>,
+        families: &[DistanceFamily],
+        mut polish: impl FnMut(&PairDistances, &[Point]) -> Result<Embedding, MapError>,
+    ) -> Result<(Option<Law>, Vec<Point>), MapError> {
+        let mut law = self.fit(families, &points);
+        for _ in 1..ROUNDS {
+            let Some(present) = &law else { break };
+            let measure = |link, pair: &Pair| self.measure_one(present, link, pair, &points).0;
+            let pairs = self.pieces.pairs(self.pairs, measure);
+            let polished = polish(&pairs, &self.pieces.take(&points))?;
+            self.pieces.put_back(&polished.points, &mut points);
+            law = self.fit(families, &points).or(law);
         }
-        Ok(state)
+        Ok((law, points))
     }
 
-    /// Distances and weights under a curve, in the place of those of the present map.
-    fn measure(
-        &self,
-        curve: DistanceCurve,
-        scores: Vec<FamilyScore>,
-        present: &Alternated,
-    ) -> (PairDistances, Fit) {
-        let points = &present.embedding.points;
+    /// The law that the map asks for. `None` where no family can be fitted or most links would have no length.
+    fn fit(&self, families: &[DistanceFamily], points: &[Point]) -> Option<Law> {
+        let lengths = self.sampled_lengths(points);
+        let (curve, scores) = choose(families, &self.sample, &lengths, self.repetition)?;
         let trust = Trust::learn(&curve, self.repetition, &self.sampled(points));
         let stretch = self.stretch(&curve);
-        let measure = |(pair, count): (&Pair, &PairCount)| {
-            let (weight, kept) = trust.weight(&curve, *count, length(points, [pair.i, pair.j]));
-            let distance = stretch * curve.distance(count.frequency());
-            (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
-        };
-        let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
-            present.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();
+        self.has_extent(&curve).then_some(Law { curve, stretch, trust, scores })
+    }
+
+    /// Distances and weights of all links under a law, seen from the present map.
+    pub fn measure(&self, law: &Law, points: &[Point]) -> Measured {
+        let all = self.pairs.pairs();
+        let measure = |link| self.measure_one(law, link, &all[link], points);
+        let (pairs, doubted): (Vec<Pair>, Vec<bool>) = (0..all.len()).into_par_iter().map(measure).unzip();
         let doubted = doubted.iter().filter(|doubted| **doubted).count() as f64 / pairs.len() as f64;
-        let pairs = PairDistances::new(self.graph.landmarks(), pairs)
+        let pairs = PairDistances::new(self.pairs.objects(), pairs)
             .expect("distances of counts are finite and weights positive (bug in covimap)");
-        (pairs, Fit { curve: curve.scaled(stretch), scores, misfit: stretch * trust.misfit, doubted })
+        Measured { pairs, doubted }
+    }
+
+    /// Distance and weight of a link, and whether it is doubted.
+    fn measure_one(&self, law: &Law, link: usize, pair: &Pair, points: &[Point]) -> (Pair, bool) {
+        let count = self.counts[link];
+        let (weight, kept) = law.trust.weight(&law.curve, count, length(points, [pair.i, pair.j]));
+        let distance = law.stretch * law.curve.distance(count.frequency());
+        (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
     }
 
     /// Whether most links have a length under a curve. They have none where all frequencies are about equal.
@@ -177,7 +181,7 @@ impl<'a> Distances<'a> {
         2 * lengths.filter(|length| *length > 0.0).count() > self.sample.len()
     }
 
-    /// Factor that gives the distances of a curve the size of those of the fixed logarithm.
+    /// [`Law::stretch`] of a curve.
     fn stretch(&self, curve: &DistanceCurve) -> f64 {
         let fixed = fixed_log();
         let (mut wanted, mut found) = (0.0, 0.0);
@@ -189,23 +193,20 @@ impl<'a> Distances<'a> {
         (wanted / found).sqrt()
     }
 
-    /// The report on the finished map.
-    pub fn report(&self, alternated: &Alternated, points: &[Point]) -> DistanceReport {
-        let (curve, fit) = match &alternated.fit {
-            Some(fit) => {
-                let lengths = self.sampled_lengths(points);
-                let again = choose(&[fit.curve.family()], &self.sample, &lengths, self.repetition);
-                (again.map_or_else(|| fit.curve.clone(), |(curve, _)| curve), Some(fit))
-            }
-            None => (fixed_log(), None),
-        };
+    /// The report on the finished map of a law, with the share of the pairs that were doubted under it.
+    pub fn report(&self, law: Option<&Law>, doubted: f64, points: &[Point]) -> DistanceReport {
+        let curve = law.map_or_else(fixed_log, |law| {
+            let lengths = self.sampled_lengths(points);
+            let again = choose(&[law.curve.family()], &self.sample, &lengths, self.repetition);
+            again.map_or_else(|| law.curve.clone().scaled(law.stretch), |(curve, _)| curve)
+        });
         DistanceReport {
-            learnt: fit.is_some(),
-            scores: fit.map_or_else(Vec::new, |fit| fit.scores.clone()),
+            learnt: law.is_some(),
+            scores: law.map_or_else(Vec::new, |law| law.scores.clone()),
             sample: self.sample.len() as u64,
             repetition: self.repetition,
-            misfit: fit.map_or(0.0, |fit| fit.misfit),
-            doubted: fit.map_or(0.0, |fit| fit.doubted),
+            misfit: law.map_or(0.0, |law| law.stretch * law.trust.misfit),
+            doubted,
             shepard: shepard::diagram(&curve, &self.sampled(points)),
             curve,
         }
@@ -219,13 +220,6 @@ impl<'a> Distances<'a> {
 
     fn sampled_lengths(&self, points: &[Point]) -> Vec<f64> {
         self.sample.ends.iter().map(|&ends| length(points, ends)).collect()
-    }
-}
-
-impl Alternated {
-    /// The map of the fixed logarithm.
-    pub fn fixed(embedding: Embedding, pairs: PairDistances) -> Self {
-        Self { embedding, pairs, fit: None }
     }
 }
 
