@@ -6,7 +6,7 @@
 //! leaves free shows in the length of `s`, and not in the residuals.
 //!
 //! # Complexity
-//! One sparse factorisation of order `2 n`, and a solution a draw.
+//! One sparse factorisation of order `2 n`, and a solution a draw, all found together.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -41,9 +41,8 @@ pub fn flexibility(
     let mut system = NormalEquations::new(pairs);
     system.factor(pairs, points, DAMPING)?;
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut squares = 0.0;
-    for _ in 0..draws {
-        let mut moves = vec![0.0; 2 * n];
+    let mut all_moves = vec![0.0; 2 * n * draws];
+    for moves in all_moves.chunks_exact_mut((2 * n).max(1)) {
         for (pair, deviation) in pairs.pairs().iter().zip(deviations) {
             let (i, j) = (pair.i as usize, pair.j as usize);
             let d = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
@@ -56,10 +55,12 @@ pub fn flexibility(
                 }
             }
         }
-        system.solve(&mut moves);
-        take_out_frame(points, &mut moves);
-        squares += moves.iter().map(|c| c * c).sum::<f64>();
     }
+    system.solve(&mut all_moves);
+    for moves in all_moves.chunks_exact_mut((2 * n).max(1)) {
+        take_out_frame(points, moves);
+    }
+    let squares: f64 = all_moves.iter().map(|c| c * c).sum();
     Ok((squares / (2 * n * draws) as f64).sqrt())
 }
 

@@ -87,22 +87,27 @@ impl Factored {
             CholeskySymbolicParams { supernodal_flop_ratio_threshold: runs, ..Default::default() },
         )
         .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: n })?;
-        let factored = Self::numeric(symbolic, matrix)?;
+        let factored = Self::numeric(symbolic, Vec::new(), matrix)?;
         factored.check(matrix)?;
         Ok(factored)
     }
 
     /// Factors another matrix with the same places of entries, without ordering anew.
     pub fn refactor(self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        let factored = Self::numeric(self.symbolic, matrix)?;
+        let factored = Self::numeric(self.symbolic, self.values, matrix)?;
         factored.check(matrix)?;
         Ok(factored)
     }
 
-    fn numeric(symbolic: SymbolicCholesky<usize>, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+    /// The factor, in the memory of `values`.
+    fn numeric(
+        symbolic: SymbolicCholesky<usize>,
+        mut values: Vec<f64>,
+        matrix: &LowerTriangle,
+    ) -> Result<Self, EmbedError> {
         let n = matrix.order();
         let out_of_memory = EmbedError::OutOfMemory { what: "factoring a sparse matrix", order: n };
-        let mut values = Vec::new();
+        values.clear();
         if values.try_reserve_exact(symbolic.len_val()).is_err() {
             return Err(out_of_memory);
         }

@@ -48,7 +48,7 @@ pub use error::EmbedError;
 pub use fastmap::fastmap;
 pub use flexibility::flexibility;
 pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
-pub use newton::{newton, newton_while};
+pub use newton::{Newton, newton};
 pub use pairs::{Pair, PairDistances};
 pub use pivot::{PivotDistances, landmark_scaling, pivot_scaling};
 pub use procrustes::{

@@ -54,74 +54,12 @@ const SHORTENINGS: usize = 20;
 /// weights are too different in size for the matrix to be factored; [`EmbedError::OutOfMemory`]
 /// where the factor does not fit into memory.
 pub fn newton(pairs: &PairDistances, start: &[Point], stop: StopRule) -> Result<Embedding, EmbedError> {
-    newton_while(pairs, start, stop, || true)
+    Newton::new(pairs).minimise(pairs, start, stop, || true)
 }
 
-/// As [`newton`], but asks before every step whether to go on; if not, the result is what was
-/// reached, with [`Termination::Interrupted`].
-///
-/// # Errors
-/// As [`newton`].
-pub fn newton_while(
-    pairs: &PairDistances,
-    start: &[Point],
-    stop: StopRule,
-    mut go_on: impl FnMut() -> bool,
-) -> Result<Embedding, EmbedError> {
-    check_start(pairs, start)?;
-    let negligible = negligible_stress(pairs);
-    let mut here = Configuration::new(pairs, start.to_vec());
-    let mut model = Model::new(pairs);
-    let mut iterations = 0;
-    let termination = loop {
-        if here.stress <= negligible {
-            break Termination::Converged;
-        }
-        if iterations == stop.max_iterations {
-            break Termination::IterationLimit;
-        }
-        if !go_on() {
-            break Termination::Interrupted;
-        }
-        iterations += 1;
-        model.refresh(pairs, &here)?;
-        let gained = match descend(pairs, &here, &model.direction(&here)) {
-            Some((next, step)) => {
-                let gained = here.stress - next.stress;
-                model.learn(step, &here, &next);
-                here = next;
-                gained
-            }
-            None => 0.0,
-        };
-        // That an aged model gains nothing may be the fault of the model.
-        if gained <= stop.tolerance * here.stress {
-            if model.age <= 1 {
-                break Termination::Converged;
-            }
-            model.expire();
-        } else if gained > FAR * here.stress {
-            model.expire();
-        }
-    };
-    Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
-}
-
-/// A configuration with its stress and the gradient of half of it.
-struct Configuration {
-    points: Vec<Point>,
-    stress: f64,
-    gradient: Vec<f64>,
-}
-
-impl Configuration {
-    fn new(pairs: &PairDistances, points: Vec<Point>) -> Self {
-        Self { stress: raw_stress(pairs, &points), gradient: half_gradient(pairs, &points), points }
-    }
-}
-
-/// What is known of the curvature around the present configuration.
-struct Model {
+/// What a descent knows of the curvature, kept for another one over the same pairs: distances and weights
+/// may change from one to the next, as long as they change little.
+pub struct Newton {
     system: NormalEquations,
     memory: Memory,
     /// Damping of the next factor.
@@ -130,10 +68,66 @@ struct Model {
     age: usize,
 }
 
-impl Model {
-    fn new(pairs: &PairDistances) -> Self {
+impl Newton {
+    /// Nothing is known as yet but which pairs there are. The ordering of the unknowns is found at the first step.
+    #[must_use]
+    pub fn new(pairs: &PairDistances) -> Self {
         let system = NormalEquations::new(pairs);
         Self { system, memory: Memory::default(), damping: FIRST_DAMPING, age: LIFETIME }
+    }
+
+    /// As [`newton`], but asks before every step whether to go on; if not, the result is what was
+    /// reached, with [`Termination::Interrupted`].
+    ///
+    /// # Errors
+    /// As [`newton`].
+    ///
+    /// # Panics
+    /// If `pairs` are not as many as those given to [`Newton::new`].
+    pub fn minimise(
+        &mut self,
+        pairs: &PairDistances,
+        start: &[Point],
+        stop: StopRule,
+        mut go_on: impl FnMut() -> bool,
+    ) -> Result<Embedding, EmbedError> {
+        check_start(pairs, start)?;
+        self.memory.clear();
+        let negligible = negligible_stress(pairs);
+        let mut here = Configuration::new(pairs, start.to_vec());
+        let mut iterations = 0;
+        let termination = loop {
+            if here.stress <= negligible {
+                break Termination::Converged;
+            }
+            if iterations == stop.max_iterations {
+                break Termination::IterationLimit;
+            }
+            if !go_on() {
+                break Termination::Interrupted;
+            }
+            iterations += 1;
+            self.refresh(pairs, &here)?;
+            let gained = match descend(pairs, &here, &self.direction(&here)) {
+                Some((next, step)) => {
+                    let gained = here.stress - next.stress;
+                    self.learn(step, &here, &next);
+                    here = next;
+                    gained
+                }
+                None => 0.0,
+            };
+            // That an aged model gains nothing may be the fault of the model.
+            if gained <= stop.tolerance * here.stress {
+                if self.age <= 1 {
+                    break Termination::Converged;
+                }
+                self.expire();
+            } else if gained > FAR * here.stress {
+                self.expire();
+            }
+        };
+        Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
     }
 
     /// Renews the factor if its time is over.
@@ -160,6 +154,19 @@ impl Model {
         let change = after.gradient.iter().zip(&before.gradient).map(|(a, b)| a - b).collect();
         self.memory.remember(step, change);
         self.age += 1;
+    }
+}
+
+/// A configuration with its stress and the gradient of half of it.
+struct Configuration {
+    points: Vec<Point>,
+    stress: f64,
+    gradient: Vec<f64>,
+}
+
+impl Configuration {
+    fn new(pairs: &PairDistances, points: Vec<Point>) -> Self {
+        Self { stress: raw_stress(pairs, &points), gradient: half_gradient(pairs, &points), points }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, PairDistances, Point, Termination, newton_while, stress1, unfold};
+use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
 use rayon::prelude::*;
 
 use crate::distances::{ComponentSteps, DistanceReport, Distances};
@@ -9,12 +9,13 @@ use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
 use crate::{
     AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, Region, RegionCover, SeamsReport,
-    Stage, StopParams, local_map,
+    Stage, local_map,
 };
 
-/// Relative gain of a step at which the polish stops while distances are being learnt: the next law moves landmarks
-/// by more.
-const ROUGH: f64 = 1e-4;
+/// The polish before anything is learnt of the distances: the first law moves landmarks by more.
+const ROUGH: StopRule = StopRule { max_iterations: 40, tolerance: 1e-3 };
+/// The polish from one law to the next.
+const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -113,22 +114,27 @@ pub(crate) fn settle(
     let mut start = shape.start(&fixed, start)?;
     let distances = Distances::new(graph, &fixed, evidence.counts, evidence.members, evidence.steps, seed);
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
+    let terms = shape.terms(&fixed)?;
+    let mut newton = Newton::new(&terms);
     let mut law = None;
-    let rough = StopParams { tolerance: ROUGH, ..params.polish_stop };
     if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
-        start = unfold(&fixed, &polish(&fixed, &start, rough, observer)?.points)?.points;
-        let polish = |pairs: &_, start: &_| polish(pairs, start, rough, observer);
+        start = polish(&mut newton, &fixed, &start, ROUGH, observer)?.points;
+        start = unfold(&fixed, &start)?.points;
+        let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
         (law, start) = distances.learn(start, &families, polish)?;
     }
-    let measured = distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
+    let measured =
+        distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
-    let pairs = measured.as_ref().map_or(&fixed, |measured| &measured.pairs);
+    let pairs = measured.as_ref().map_or(&*terms, |measured| &measured.pairs);
     if shape.pull == 0.0 {
-        start = unfold(pairs, &polish(pairs, &start, rough, observer)?.points)?.points;
+        // Folds show where the map is near its minimum.
+        start = polish(&mut newton, pairs, &start, ROUGH, observer)?.points;
+        start = unfold(pairs, &start)?.points;
     }
-    let mut polished = polish(&*shape.terms(pairs)?, &start, params.polish_stop, observer)?;
+    let mut polished = polish(&mut newton, pairs, &start, params.polish_stop.rule(), observer)?;
     observer.finished(Stage::Polish);
 
     let start = std::mem::take(&mut polished.points);
@@ -142,7 +148,7 @@ pub(crate) fn settle(
     };
     let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
-        stress1: stress1(pairs, &points),
+        stress1: stress1(measured.as_ref().map_or(&fixed, |measured| &measured.pairs), &points),
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,
         distances: distances.as_ref().map(|distances| distances.report(law.as_ref(), doubted, &points)),
@@ -163,12 +169,13 @@ fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<()
 
 /// Least stress over all terms, from a start.
 fn polish(
+    newton: &mut Newton,
     pairs: &PairDistances,
     start: &[Point],
-    stop: StopParams,
+    stop: StopRule,
     observer: &dyn Observer,
 ) -> Result<Embedding, MapError> {
-    let polished = newton_while(pairs, start, stop.rule(), || {
+    let polished = newton.minimise(pairs, start, stop, || {
         observer.advanced(1);
         !observer.interrupted()
     })?;

@@ -63,9 +63,10 @@ impl NormalEquations {
         Ok(())
     }
 
-    /// Replaces a right-hand side by the solution under the last factor.
-    pub fn solve(&self, rhs: &mut [f64]) {
-        self.factored.as_ref().expect("factored before it is solved (bug in covimap)").solve(rhs, 1);
+    /// Replaces right-hand sides, one after the other, by the solutions under the last factor.
+    pub fn solve(&self, sides: &mut [f64]) {
+        let factored = self.factored.as_ref().expect("factored before it is solved (bug in covimap)");
+        factored.solve(sides, sides.len() / (2 * self.tied.len()).max(1));
     }
 
     /// Fills the matrix.

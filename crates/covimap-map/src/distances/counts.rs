@@ -61,12 +61,11 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    /// Draws some of the links at these places of the list, and counts them over the steps of their component, in one
-    /// pass.
-    pub fn draw(pairs: &PairDistances, among: &[usize], steps: &ComponentSteps, seed: u64) -> Self {
+    /// Draws links and counts them over the steps of their component, in one pass.
+    pub fn draw(pairs: &PairDistances, steps: &ComponentSteps, seed: u64) -> Self {
+        let total = pairs.pairs().len();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let drawn = rand::seq::index::sample(&mut rng, among.len(), among.len().min(SAMPLE));
-        let mut links: Vec<usize> = drawn.into_iter().map(|k| among[k]).collect();
+        let mut links = rand::seq::index::sample(&mut rng, total, total.min(SAMPLE)).into_vec();
         links.sort_unstable();
         let ends: Vec<[u32; 2]> = links.iter().map(|&link| pairs.pairs()[link]).map(|p| [p.i, p.j]).collect();
         let blocks = count_blocks(&ends, pairs.objects(), steps);

@@ -6,7 +6,7 @@
 //! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
 //!
 //! # Algorithm
-//! A few rounds, all but the last on a few [`pieces`] of a large component, of
+//! A few rounds of
 //! 1. every family ([`covimap_embed::DistanceFamily`]) is fitted to the counts of either half of the
 //!    time - alternate blocks of steps - at the distances of the present map, and judged by the
 //!    likelihood of the counts of the other half ([`choice`]). Not by stress: a curve that
@@ -14,11 +14,13 @@
 //! 2. the best one turns frequencies into distances, scaled so that their size stays;
 //! 3. weights are the inverse variance of these distances, less where a wall seems to be between
 //!    the two landmarks ([`weights`]);
-//! 4. the polish, from the present map.
+//! 4. a few steps of the polish, from the present map.
+//!
+//! What made a part of the map a fold or a mirror image is a distance too long for the map around it. Its weight
+//! falls from round to round, until the others can open the fold: rounds are worth more than a full polish in each.
 //!
 //! # Complexity
-//! One pass over the log to count 40 000 sampled links, `O(links)`, and one polish of the component; those of
-//! the pieces take the same time however large it is.
+//! One pass over the log to count 40 000 sampled links, `O(links)` a round, and the steps.
 //!
 //! # Failure
 //! A component with fewer than three links a landmark has no report and keeps the logarithm. So does one
@@ -30,7 +32,6 @@
 
 mod choice;
 mod counts;
-mod pieces;
 mod shepard;
 mod steps;
 mod weights;
@@ -47,13 +48,12 @@ use crate::{CoVisibility, LinkGraph, MapError};
 pub use choice::FamilyScore;
 use choice::choose;
 use counts::{PairCount, Sample};
-use pieces::Pieces;
 pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
 
-/// Rounds of fitting and polishing: more move the map by less than the noise of the counts.
-const ROUNDS: usize = 3;
+/// Rounds of fitting and a few steps of the polish.
+const ROUNDS: usize = 5;
 /// Links a landmark that a fit asks for: half as many again as coordinates.
 const LINKS_A_LANDMARK: usize = 3;
 /// A pair that keeps less of its weight is doubted.
@@ -86,7 +86,6 @@ pub(crate) struct Distances<'a> {
     /// The links with the distances of the fixed logarithm.
     pairs: &'a PairDistances,
     counts: Vec<PairCount>,
-    pieces: Pieces,
     sample: Sample,
     repetition: f64,
 }
@@ -121,10 +120,9 @@ impl<'a> Distances<'a> {
         if graph.link_count() < LINKS_A_LANDMARK * graph.landmarks() {
             return None;
         }
-        let pieces = Pieces::of(graph, pairs);
-        let sample = Sample::draw(pairs, &pieces.links, steps, seed);
+        let sample = Sample::draw(pairs, steps, seed);
         let repetition = sample.repetition();
-        Some(Self { pairs, counts: counts::of_links(graph, counts, members), pieces, sample, repetition })
+        Some(Self { pairs, counts: counts::of_links(graph, counts, members), sample, repetition })
     }
 
     /// Alternates fit and polish, starting from the map of the fixed logarithm: the law, if there is one, and
@@ -136,12 +134,9 @@ impl<'a> Distances<'a> {
         mut polish: impl FnMut(&PairDistances, &[Point]) -> Result<Embedding, MapError>,
     ) -> Result<(Option<Law>, Vec<Point>), MapError> {
         let mut law = self.fit(families, &points);
-        for _ in 1..ROUNDS {
+        for _ in 0..ROUNDS {
             let Some(present) = &law else { break };
-            let measure = |link, pair: &Pair| self.measure_one(present, link, pair, &points).0;
-            let pairs = self.pieces.pairs(self.pairs, measure);
-            let polished = polish(&pairs, &self.pieces.take(&points))?;
-            self.pieces.put_back(&polished.points, &mut points);
+            points = polish(&self.measure(present, &points).pairs, &points)?.points;
             law = self.fit(families, &points).or(law);
         }
         Ok((law, points))
@@ -156,23 +151,19 @@ impl<'a> Distances<'a> {
         self.has_extent(&curve).then_some(Law { curve, stretch, trust, scores })
     }
 
-    /// Distances and weights of all links under a law, seen from the present map.
+    /// Distances and weights of the links under a law, seen from the present map.
     pub fn measure(&self, law: &Law, points: &[Point]) -> Measured {
-        let all = self.pairs.pairs();
-        let measure = |link| self.measure_one(law, link, &all[link], points);
-        let (pairs, doubted): (Vec<Pair>, Vec<bool>) = (0..all.len()).into_par_iter().map(measure).unzip();
+        let measure = |(pair, count): (&Pair, &PairCount)| {
+            let (weight, kept) = law.trust.weight(&law.curve, *count, length(points, [pair.i, pair.j]));
+            let distance = law.stretch * law.curve.distance(count.frequency());
+            (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
+        };
+        let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
+            self.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();
         let doubted = doubted.iter().filter(|doubted| **doubted).count() as f64 / pairs.len() as f64;
         let pairs = PairDistances::new(self.pairs.objects(), pairs)
             .expect("distances of counts are finite and weights positive (bug in covimap)");
         Measured { pairs, doubted }
-    }
-
-    /// Distance and weight of a link, and whether it is doubted.
-    fn measure_one(&self, law: &Law, link: usize, pair: &Pair, points: &[Point]) -> (Pair, bool) {
-        let count = self.counts[link];
-        let (weight, kept) = law.trust.weight(&law.curve, count, length(points, [pair.i, pair.j]));
-        let distance = law.stretch * law.curve.distance(count.frequency());
-        (Pair { distance, weight: weight * kept, ..*pair }, kept < HALF)
     }
 
     /// Whether most links have a length under a curve. They have none where all frequencies are about equal.

@@ -166,7 +166,7 @@ fn sensor_scores(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> Sen
             let mut scores = SensorScores::default();
             for &set in chunk {
                 let step = posterior.of(sets.seen(set), &mut workspace);
-                scores.gather(&step, sets.times(set), model.sensor);
+                scores.gather(&step, sets.times(set), model.sensor, posterior.sight());
             }
             scores
         })

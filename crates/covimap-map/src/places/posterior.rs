@@ -5,7 +5,7 @@ use std::ops::Range;
 use covimap_embed::Point;
 
 use super::Model;
-use super::grid::{CELLS, Cells, Cutting, NEAR, Sight};
+use super::grid::{CELLS, Cells, Cutting, NEAR, Sight, wide};
 use crate::LinkGraph;
 
 /// Places below this share of the most likely one are passed over.
@@ -97,8 +97,13 @@ impl<'a> Posterior<'a> {
     pub fn of<'w>(&self, seen: &[u32], workspace: &'w mut Workspace) -> Step<'w> {
         self.find_witnesses(seen, workspace);
         let Workspace { witnesses, places, .. } = workspace;
-        self.multiply(witnesses, places);
-        let rows = normalise(places);
+        let rows = wide(
+            #[inline(always)]
+            || {
+                self.multiply(witnesses, places);
+                normalise(places)
+            },
+        );
         Step { witnesses, places, rows }
     }
 
@@ -155,6 +160,7 @@ impl<'a> Posterior<'a> {
     }
 
     /// Probability of the step's sightings from every place, eq. (2), up to a common factor.
+    #[inline(always)]
     fn multiply(&self, witnesses: &[Witness], places: &mut Cells) {
         *places = [[1.0; CELLS]; CELLS];
         let e = self.sight.false_sighting;
@@ -175,6 +181,7 @@ impl<'a> Posterior<'a> {
     }
 }
 
+#[inline(always)]
 fn largest(places: &Cells) -> f32 {
     let mut most = [0.0f32; CELLS];
     for row in places {
@@ -186,6 +193,7 @@ fn largest(places: &Cells) -> f32 {
 }
 
 /// Drops the negligible places and makes the others sum to 1; returns the rows that hold any.
+#[inline(always)]
 fn normalise(places: &mut Cells) -> Range<usize> {
     let floor = NEGLIGIBLE * largest(places);
     let mut total = 0.0;

@@ -11,7 +11,7 @@
 
 use covimap_embed::Point;
 
-use super::grid::{CELLS, Sight};
+use super::grid::{CELLS, Lanes, Sight, sum, wide};
 use super::posterior::{Step, Witness};
 use super::sensor::DETECTABILITY;
 
@@ -46,15 +46,20 @@ impl ScoreBoard {
 
     /// Adds `times` steps with the posterior of their place.
     pub fn gather(&mut self, step: &Step, times: f64, sight: &Sight) {
-        for witness in step.witnesses {
-            let own = Scores::of(witness, step, sight);
-            let sum = &mut self.scores[witness.landmark as usize];
-            // Any step adds information on the detectability.
-            if sum.detectability_information <= 0.0 {
-                self.touched.push(witness.landmark);
-            }
-            sum.add(&own, times);
-        }
+        wide(
+            #[inline(always)]
+            || {
+                for witness in step.witnesses {
+                    let own = Scores::of(witness, step, sight);
+                    let sum = &mut self.scores[witness.landmark as usize];
+                    // Any step adds information on the detectability.
+                    if sum.detectability_information <= 0.0 {
+                        self.touched.push(witness.landmark);
+                    }
+                    sum.add(&own, times);
+                }
+            },
+        );
     }
 
     /// The scores gathered since the last call, by landmark.
@@ -65,11 +70,9 @@ impl ScoreBoard {
     }
 }
 
-/// Sums over the places, one a column of the grid.
-type Lanes = [f32; CELLS];
-
 impl Scores {
     /// Of a landmark, from one step.
+    #[inline(always)]
     fn of(witness: &Witness, step: &Step, sight: &Sight) -> Self {
         let [x, y] = witness.cutting.offset;
         let by_sight = witness.detectability - sight.false_sighting;
@@ -100,7 +103,6 @@ impl Scores {
                 pp[k] += information * v * v;
             }
         }
-        let sum = |lanes: Lanes| f64::from(lanes.iter().sum::<f32>());
         let [x, y] = [sum(gx), sum(gy)];
         Self {
             position: [x, y],
@@ -111,6 +113,7 @@ impl Scores {
         }
     }
 
+    #[inline(always)]
     pub fn add(&mut self, other: &Self, times: f64) {
         self.position[0] += times * other.position[0];
         self.position[1] += times * other.position[1];

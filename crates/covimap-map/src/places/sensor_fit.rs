@@ -1,7 +1,7 @@
 //! How range, edge, detectability and false sightings of the sensor are fitted to the log.
 
-use super::grid::SPACING;
-use super::posterior::Step;
+use super::grid::{CELLS, Sight, sum, wide};
+use super::posterior::{Step, Witness};
 use super::sensor::{DETECTABILITY, FALSE_SIGHTING, Sensor};
 
 /// Narrowest edge, as a share of the range: the grid of places resolves no finer.
@@ -30,31 +30,48 @@ pub(super) struct SensorScores {
 
 impl SensorScores {
     /// Adds `times` steps with the posterior of their place.
-    pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor) {
-        let spacing = SPACING * sensor.range;
-        for witness in step.witnesses {
-            let by_sight = f64::from(witness.detectability) - sensor.false_sighting;
-            for row in step.rows.clone() {
-                for (column, &weight) in step.places[row].iter().enumerate().filter(|place| *place.1 > 0.0) {
-                    let [x, y] = witness.cutting.offset.map(f64::from);
-                    let (dx, dy) = (x - column as f64, y - row as f64);
-                    let distance = (dx * dx + dy * dy).sqrt() * spacing;
-                    let v = sensor.visibility(distance);
-                    let p = sensor.false_sighting + by_sight * v;
-                    let information = times * f64::from(weight) / (p * (1.0 - p));
-                    let surprise = information * (f64::from(u8::from(witness.seen)) - p);
-                    let by_range = by_sight * v * (1.0 - v) / sensor.edge;
-                    let by_edge = by_range * (distance - sensor.range);
-                    self.range[0] += surprise * by_range;
-                    self.range[1] += information * by_range * by_range;
-                    self.log_edge[0] += surprise * by_edge;
-                    self.log_edge[1] += information * by_edge * by_edge;
-                    self.detectability[0] += surprise * v;
-                    self.detectability[1] += information * v * v;
-                    self.false_sighting[0] += surprise * (1.0 - v);
-                    self.false_sighting[1] += information * (1.0 - v) * (1.0 - v);
+    pub fn gather(&mut self, step: &Step, times: f64, sensor: Sensor, sight: &Sight) {
+        wide(
+            #[inline(always)]
+            || {
+                for witness in step.witnesses {
+                    self.gather_one(witness, step, times, sensor, sight);
+                }
+            },
+        );
+    }
+
+    /// The same of one landmark.
+    #[inline(always)]
+    fn gather_one(&mut self, witness: &Witness, step: &Step, times: f64, sensor: Sensor, sight: &Sight) {
+        let by_sight = witness.detectability - sight.false_sighting;
+        let seen = f32::from(u8::from(witness.seen));
+        let [range, edge, spacing] = [sensor.range, sensor.edge, sight.spacing].map(|length| length as f32);
+        let [x, y] = witness.cutting.offset;
+        let mut sums = [[[0.0; CELLS]; 2]; 4];
+        for row in step.rows.clone() {
+            let weights = &step.places[row];
+            let visibility = sight.visibility(witness.cutting, row);
+            let across = y - row as f32;
+            for k in 0..CELLS {
+                let v = visibility[k];
+                let p = sight.false_sighting + by_sight * v;
+                let information = weights[k] / (p * (1.0 - p));
+                let surprise = information * (seen - p);
+                let along = x - k as f32;
+                let distance = (along * along + across * across).sqrt() * spacing;
+                let by_range = by_sight * v * (1.0 - v) / edge;
+                let by_edge = by_range * (distance - range);
+                for (sum, slope) in sums.iter_mut().zip([by_range, by_edge, v, 1.0 - v]) {
+                    sum[0][k] += surprise * slope;
+                    sum[1][k] += information * slope * slope;
                 }
             }
+        }
+        let own = [&mut self.range, &mut self.log_edge, &mut self.detectability, &mut self.false_sighting];
+        for (own, [score, information]) in own.into_iter().zip(sums) {
+            own[0] += times * sum(score);
+            own[1] += times * sum(information);
         }
     }
 

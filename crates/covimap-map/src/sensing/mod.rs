@@ -189,13 +189,17 @@ pub(crate) fn learn(
                 part = graph.restricted_to(members);
                 &part
             };
-            let found = observe(graph, sets, points, observer)?;
+            let (found, warp) = rayon::join(
+                || observe(graph, sets, points, observer),
+                || warp::warp(counts, graph, members, points),
+            );
+            let found = found?;
             let sensor = SensorModel {
                 range: found.sensor.range,
                 edge: found.sensor.edge,
                 detectability: found.sensor.detectability,
                 outliers: found.outliers,
-                warp: warp::warp(counts, graph, members, points)?,
+                warp: warp?,
             };
             sensors.push(sensor);
             for (place, &member) in members.iter().enumerate() {

@@ -15,9 +15,7 @@ fn drawn(log: &SightingLog) -> (LinkGraph, Sample) {
     let members = vec![(0..graph.landmarks() as u32).collect()];
     let membership = Membership::new(graph.landmarks(), &members);
     let steps = ComponentSteps::of_all(log, &membership, 1).pop().unwrap();
-    let pairs = graph.to_pairs();
-    let all: Vec<usize> = (0..pairs.pairs().len()).collect();
-    let sample = Sample::draw(&pairs, &all, &steps, 0);
+    let sample = Sample::draw(&graph.to_pairs(), &steps, 0);
     (graph, sample)
 }
 
