@@ -53,7 +53,7 @@ pub(crate) fn map_component(
 ) -> Result<ComponentMap, MapError> {
     let (cover, stitched) = stitched(graph, params, observer)?;
     let shape = Shape::of(graph, &cover, &stitched);
-    let Stitched { points, branch_of, seams, .. } = stitched;
+    let Stitched { points, branch_of, seams } = stitched;
     let settled = settle(graph, evidence, points, shape, params, seed, observer)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })

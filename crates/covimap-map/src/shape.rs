@@ -29,8 +29,6 @@ use crate::{LinkGraph, MapError, RegionCover};
 
 /// Links a landmark from which on links alone make the map.
 const ENOUGH_LINKS: usize = 10;
-/// Stress-1 of local maps above which their links do not fit into the plane: Kruskal's word for 0.2 is poor.
-const POOR: f64 = 0.2;
 /// Most landmarks: the second sum fills in the factors of the polish.
 const MOST_LANDMARKS: usize = 10_000;
 /// Most pivots.
@@ -54,9 +52,7 @@ impl Shape {
         let n = graph.landmarks();
         let sure = cover.core_of().iter().filter(|&&region| stitched.branch_of[region as usize] == 0).count();
         let few = graph.link_count() < ENOUGH_LINKS * n;
-        let poor = cover.regions().len() > 1 && stitched.local_stress1 > POOR;
-        let free = (few && 2 * sure < n) || poor;
-        Self { pull: if free && n <= MOST_LANDMARKS { 1.0 } else { 0.0 } }
+        Self { pull: if few && 2 * sure < n && n <= MOST_LANDMARKS { 1.0 } else { 0.0 } }
     }
 
     /// The terms of eq. (1).

@@ -35,8 +35,6 @@ pub(crate) struct Stitched {
     pub branch_of: Vec<u32>,
     /// Dropped seams and hinges.
     pub seams: SeamsReport,
-    /// Median stress-1 of the local maps.
-    pub local_stress1: f64,
 }
 
 /// Puts the maps of the regions of a connected graph together.
@@ -51,9 +49,7 @@ pub(crate) fn stitch(
     let synchronised = synchronise(maps.len(), &edges, options)?;
     let points = blend(graph.landmarks(), cover, maps, &synchronised.global_from_node);
     let (branch_of, seams) = branches::find(cover, &seams, &synchronised.edges);
-    let mut stresses: Vec<f64> = maps.iter().map(|map| map.stress1).collect();
-    stresses.sort_by(f64::total_cmp);
-    Ok(Stitched { points, branch_of, seams, local_stress1: stresses[stresses.len() / 2] })
+    Ok(Stitched { points, branch_of, seams })
 }
 
 fn relative_frame(seam: &Seam) -> RelativeFrame {
