@@ -99,7 +99,7 @@ impl Factored {
         Ok(factored)
     }
 
-    /// The factor, in the memory of `values`.
+    /// The factor, in the memory of `values`, whatever they are.
     fn numeric(
         symbolic: SymbolicCholesky<usize>,
         mut values: Vec<f64>,
@@ -107,8 +107,8 @@ impl Factored {
     ) -> Result<Self, EmbedError> {
         let n = matrix.order();
         let out_of_memory = EmbedError::OutOfMemory { what: "factoring a sparse matrix", order: n };
-        values.clear();
-        if values.try_reserve_exact(symbolic.len_val()).is_err() {
+        let more = symbolic.len_val().saturating_sub(values.len());
+        if values.try_reserve_exact(more).is_err() {
             return Err(out_of_memory);
         }
         values.resize(symbolic.len_val(), 0.0);

@@ -10,7 +10,7 @@
 //! | counts | `16 M` | from counting on |
 //! | links | `48 M`, twice where there are several components | from counting on |
 //! | sets of landmarks seen | `4 S + 12 T` | from counting on |
-//! | scaling problem and its normal equations | `104 M + 48 N` | polish |
+//! | scaling problem, as it was and as measured, and its normal equations | `128 M + 48 N` | polish |
 //! | sparse factor | see below | polish |
 //! | dense tables of the paper's method | `5 * 8 N^2` | classical |
 //!
@@ -61,7 +61,7 @@ impl MemoryEstimate {
         let held = 4.0 * s + 8.0 * t + ids as f64 + 16.0 * m;
         let counting = held + 4.0 * s + 4.0 * n * threads as f64;
         let mapping = match params.method {
-            Method::Auto => held + 96.0 * m + 4.0 * s + 12.0 * t + 104.0 * m + 48.0 * n + factor(n, m),
+            Method::Auto => held + 96.0 * m + 4.0 * s + 12.0 * t + 128.0 * m + 48.0 * n + factor(n, m),
             Method::Classical => held + 96.0 * m + 40.0 * n * n,
         };
         let peak = |bytes: f64| (BASE + OVERHEAD * bytes) as u64;

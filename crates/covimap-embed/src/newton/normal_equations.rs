@@ -78,7 +78,7 @@ impl NormalEquations {
         for (pair, block) in pairs.pairs().iter().zip(&self.block_of_pair) {
             let (i, j) = (pair.i as usize, pair.j as usize);
             let d = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
-            let r = d[0].hypot(d[1]);
+            let r = (d[0] * d[0] + d[1] * d[1]).sqrt();
             let (u, ratio) =
                 if r > 0.0 { ([d[0] / r, d[1] / r], pair.distance / r) } else { ([0.0; 2], 1.0) };
             let across = (1.0 - ratio).max(0.0);

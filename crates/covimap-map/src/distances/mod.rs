@@ -1,6 +1,6 @@
 //! The distance function of a log: learnt from the map that it makes.
 //!
-//! Regions, stitching and the first polish need distances before anything is known of the sensor,
+//! Regions, stitching and a rough polish need distances before anything is known of the sensor,
 //! and take the paper's logarithm. Their map shows how frequencies really fall with distance. So
 //! a curve is fitted to it, the map is polished with the distances of that curve, and again:
 //! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
@@ -52,7 +52,7 @@ pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
 
-/// Rounds of fitting and a few steps of the polish.
+/// Rounds of fitting and a few steps of the polish: with two, folds stay; more than five change little.
 const ROUNDS: usize = 5;
 /// Links a landmark that a fit asks for: half as many again as coordinates.
 const LINKS_A_LANDMARK: usize = 3;

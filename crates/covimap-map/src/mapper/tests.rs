@@ -174,7 +174,7 @@ impl Observer for Diary {
 #[test]
 fn every_stage_is_told_once_for_each_component_and_ends_before_the_next() {
     let auto =
-        [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Polish, Stage::Distances, Stage::Refine];
+        [Stage::Regions, Stage::LocalMaps, Stage::Stitch, Stage::Distances, Stage::Polish, Stage::Refine];
     for (method, stages) in [(Method::Auto, &auto[..]), (Method::Classical, &[Stage::Classical])] {
         let diary = Diary::default();
         mapper(method).build(&two_halls(), &diary).unwrap();
@@ -193,8 +193,8 @@ fn a_build_stops_in_any_stage() {
         Stage::Regions,
         Stage::LocalMaps,
         Stage::Stitch,
-        Stage::Polish,
         Stage::Distances,
+        Stage::Polish,
         Stage::Refine,
         Stage::Sensor,
     ];
