@@ -9,8 +9,8 @@
 //! 1. The *strain* of an object is the share of `sum w d^2` that is left as stress,
 //!    `sum w (r - d)^2 / sum w d^2`, over the pairs of the object and of its neighbours. Where it is above
 //!    [`UNUSUAL`] times the median, the object is a seed, those of greatest strain first.
-//! 2. The seed and its neighbours are mirrored, about each of a few lines through their centre,
-//!    and with all objects within two pairs of the seed moved to their nearest minimum while
+//! 2. The seed and its neighbours, and again the nearer half of them, are mirrored about each of a few lines through
+//!    their centre, and with all objects within two pairs of the seed moved to their nearest minimum while
 //!    the rest is held. The pairs of these objects are all that changes.
 //! 3. The best of these minima is taken if its stress is less than before by [`WORTHWHILE`].
 //!
@@ -44,8 +44,9 @@ use patch::Patch;
 const UNUSUAL: f64 = 1.8;
 /// Strain below which no place is looked at: distances are off by a thousandth.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Share of the stress of its surroundings that a mirrored place must save.
-const WORTHWHILE: f64 = 1e-3;
+/// Share of the stress of its surroundings that a mirrored place must save. Distances that are a little wrong make
+/// some mirror images look better by less.
+const WORTHWHILE: f64 = 1e-2;
 /// Lines about which is mirrored, evenly turned.
 const LINES: usize = 4;
 /// Times that the surroundings of what changed are looked at again.

@@ -18,6 +18,7 @@ const PATIENCE: f64 = 50.0;
 
 /// The surroundings of a seed, each list ascending.
 pub(super) struct Patch {
+    seed: u32,
     /// The seed and its neighbours.
     core: Vec<u32>,
     /// The core and its neighbours.
@@ -52,7 +53,7 @@ impl Patch {
         }
         let mut ring = with_neighbours(&free, incidence);
         ring.retain(|object| free.binary_search(object).is_err());
-        Some(Self { core, free, ring })
+        Some(Self { seed, core, free, ring })
     }
 
     pub fn core(&self) -> impl Iterator<Item = u32> {
@@ -73,19 +74,31 @@ impl Patch {
         let springs = self.springs(pairs, incidence);
         let present: Vec<Point> = self.objects().map(|object| points[object as usize]).collect();
         let (present, stress) = springs.settled(present, f64::INFINITY)?;
-        let core: Vec<usize> = self.core.iter().filter_map(|own| self.free.binary_search(own).ok()).collect();
         let mut best = (None, stress * (1.0 - WORTHWHILE));
-        for line in 0..LINES {
-            let angle = std::f64::consts::PI * line as f64 / LINES as f64;
-            let mirrored = mirrored(&present, &core, angle);
-            if let Some((places, stress)) = springs.settled(mirrored, best.1) {
-                best = (Some(places), stress);
+        for some in self.mirrored_parts(&springs) {
+            for line in 0..LINES {
+                let angle = std::f64::consts::PI * line as f64 / LINES as f64;
+                let mirrored = mirrored(&present, &some, angle);
+                if let Some((places, stress)) = springs.settled(mirrored, best.1) {
+                    best = (Some(places), stress);
+                }
             }
         }
         best.0.map(|mut places| {
             places.truncate(self.free.len());
             places
         })
+    }
+
+    /// Places in the list of free objects of the core, and of its half that is nearest to the seed.
+    fn mirrored_parts(&self, springs: &Springs) -> [Vec<usize>; 2] {
+        let place = |own| self.free.binary_search(own).expect("the core is free (bug in covimap)");
+        let seed = place(&self.seed);
+        let mut near: Vec<&Spring> = springs.of(seed).iter().collect();
+        near.sort_by(|a, b| a.length.total_cmp(&b.length).then(a.to.cmp(&b.to)));
+        near.truncate(near.len() / 2);
+        let half = std::iter::once(seed).chain(near.iter().map(|spring| spring.to)).collect();
+        [self.core.iter().map(place).collect(), half]
     }
 
     fn springs(&self, pairs: &PairDistances, incidence: &Incidence) -> Springs {
