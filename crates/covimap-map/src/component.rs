@@ -119,6 +119,7 @@ pub(crate) fn settle(
     let mut law = None;
     if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
         start = polish(&mut newton, &fixed, &start, ROUGH, observer)?.points;
+        start = unfold(&fixed, &start)?.points;
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
         (law, start) = distances.learn(start, &families, polish)?;
     }
