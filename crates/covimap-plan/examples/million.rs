@@ -5,7 +5,7 @@
 //! ```
 //!
 //! makes up a map of that many landmarks, ten a square metre, saves and loads it in both forms, and asks
-//! for neighbours, turns and routes. `hall` is an open floor; `rooms` has walls every ten metres with a
+//! for neighbours, turns, routes and places. `hall` is an open floor; `rooms` has walls every ten metres with a
 //! door of 1.5 m in each, which lines of sight pass through alone. Landmarks are numbered strip by strip, as a robot that
 //! sweeps the floor meets them. Times are of the processor, user and system, over all threads: they do not
 //! depend on what else runs.
@@ -14,10 +14,10 @@ use std::error::Error;
 use std::sync::Arc;
 
 use covimap_map::{
-    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, SightLines,
-    delaunay_edges,
+    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, Sensing, SensorModel,
+    SightLines, delaunay_edges,
 };
-use covimap_plan::{MapIndex, Objective, RoadParams, Roads};
+use covimap_plan::{Localiser, MapIndex, Objective, RoadParams, Roads};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -25,6 +25,8 @@ type Point = [f64; 2];
 
 const PER_SQUARE_METRE: f64 = 10.0;
 const RANGE: f64 = 1.2;
+const SEEN: f64 = RANGE / 2.0;
+const DETECTED: f64 = 0.9;
 const ROOM: f64 = 10.0;
 const DOOR: f64 = 1.5;
 const SIGHTINGS: u32 = 300;
@@ -44,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         assert_eq!(loaded, map);
     }
     let n = map.len() as u32;
-    let index = timed("index", 1, || MapIndex::new(Arc::new(map)));
+    let index = Arc::new(timed("index", 1, || MapIndex::new(Arc::new(map))));
     timed("covariances", 1, || index.covariance(LandmarkId(0)))?;
     timed("Delaunay graph", 1, || index.neighbours(LandmarkId(0)).map(<[_]>::len))?;
     let mut random = ChaCha8Rng::seed_from_u64(7);
@@ -54,6 +56,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     timed("orientation", triples.len(), || {
         triples.iter().try_for_each(|&[a, b, c]| index.orientation(a, b, c).map(drop))
     })?;
+    let localiser = timed("localiser", 1, || Localiser::new(Arc::clone(&index)))?;
+    let looks = ids[..1000].iter().map(|&id| {
+        let near = index.within(id, SEEN)?.into_iter().filter(|_| random.random_bool(DETECTED));
+        Ok(localiser.look(near.map(|near| index.name(near.landmark))))
+    });
+    let looks = looks.collect::<Result<Vec<_>, covimap_plan::PlanError>>()?;
+    let found: usize = timed("locate", looks.len(), || {
+        looks.iter().filter(|look| localiser.locate(look).best().is_some()).count()
+    });
+    println!("  {found} of {} looks located", looks.len());
     for objective in [Objective::Shortest, Objective::Safest] {
         let mut params = RoadParams::default();
         params.objective = objective;
@@ -101,7 +113,11 @@ fn make_up(n: u32, walls: bool) -> Result<GlobalMap, Box<dyn Error>> {
         names.push(&format!("L{i:07}"));
     }
     let map = GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default())?;
-    Ok(map.with_sight_lines(lines)?)
+    let n = map.len();
+    let sensor =
+        SensorModel { range: SEEN, edge: 0.05, detectability: DETECTED, outliers: 0.001, warp: 0.02 };
+    let sensing = Sensing::from_parts(vec![sensor], vec![DETECTED; n], vec![0.02; n], &[])?;
+    Ok(map.with_sight_lines(lines)?.with_sensing(sensing)?)
 }
 
 /// Whether a line meets no wall across an axis, or goes through the door in its middle.

@@ -4,7 +4,7 @@ use covimap_embed::{Correspondence, ProcrustesOptions, Reflection, procrustes};
 
 use super::*;
 use crate::fixtures::{distance, log_of, looks, on_threads, scattered};
-use crate::{Silent, StopParams};
+use crate::{DistanceChoice, Silent, StopParams};
 
 fn mapper(method: Method) -> Mapper {
     Mapper::new(MapperParams { method, ..MapperParams::default() }).unwrap()
@@ -132,10 +132,17 @@ fn names_do_not_matter() {
     let truth = scattered(60, [2.0, 3.0], 2);
     let looks = looks(&truth, [2.0, 3.0], 0.6, 600);
     let renamed: Vec<Vec<usize>> = looks.iter().map(|look| look.iter().map(|i| 59 - i).collect()).collect();
-    for method in [Method::Auto, Method::Classical] {
-        // Polished to the end: where steps stop on the way depends on the order of sums.
+    // Polished to the end: where steps stop on the way depends on the order of sums. Learning the distances never
+    // ends; what is left open there is small against what the log leaves open, some 0.02.
+    let settings = [
+        (Method::Auto, DistanceChoice::FixedLog, 1e-4),
+        (Method::Auto, DistanceChoice::Auto, 2e-3),
+        (Method::Classical, DistanceChoice::Auto, 1e-4),
+    ];
+    for (method, distance, close) in settings {
         let mut params = MapperParams { method, ..MapperParams::default() };
         params.auto.polish_stop = StopParams { max_iterations: 1000, tolerance: 1e-12 };
+        params.auto.distance = distance;
         let mapper = Mapper::new(params).unwrap();
         let map_of = |looks: &Vec<Vec<usize>>| mapper.build(&log_of(looks), &Silent).unwrap();
         let [map, other] = [&looks, &renamed].map(map_of);
@@ -146,7 +153,7 @@ fn names_do_not_matter() {
         });
         let options = ProcrustesOptions { scale: false, reflection: Reflection::Allow };
         let rmse = procrustes(&pairs.collect::<Vec<_>>(), options).unwrap().rmse;
-        assert!(rmse < 1e-4, "{method:?}: {rmse}");
+        assert!(rmse < close, "{method:?}, {distance:?}: {rmse}");
     }
 }
 
