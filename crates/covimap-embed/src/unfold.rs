@@ -74,10 +74,9 @@ pub struct Unfolded {
 pub fn unfold(pairs: &PairDistances, points: &[Point]) -> Result<Unfolded, EmbedError> {
     check_start(pairs, points)?;
     let incidence = Incidence::new(pairs);
-    let unusual = std::env::var("UNFT").map_or(UNUSUAL, |v| v.parse().unwrap());
     let mut unfolded = Unfolded { points: points.to_vec(), tried: 0, mended: 0 };
     let mut strains = strains(pairs, &incidence, points);
-    let unusual = (unusual * median(&strains)).max(NEGLIGIBLE);
+    let unusual = (UNUSUAL * median(&strains)).max(NEGLIGIBLE);
     let mut looked_at = vec![true; points.len()];
     for _ in 0..ROUNDS {
         let mut seeds: Vec<u32> = (0..points.len() as u32)
