@@ -35,6 +35,7 @@ mod spring;
 mod starts;
 mod stress;
 mod synchronise;
+mod unfold;
 
 pub use anchored::anchored_while;
 pub use classical::{ClassicalScaling, classical_scaling};
@@ -64,6 +65,7 @@ pub use spring::spring_embedding;
 pub use starts::{random_starts, torgerson_start};
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
+pub use unfold::{Unfolded, unfold};
 
 /// A position in the plane, `[x, y]`.
 pub type Point = [f64; 2];

@@ -1,6 +1,6 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1};
+use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
 use rayon::prelude::*;
 
 use crate::distances::{ComponentSteps, DistanceReport, Distances, Law};
@@ -133,6 +133,7 @@ pub(crate) fn settle(
     let mut law = None;
     if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
         start = polish(&mut newton, &fixed, &start, ROUGH, observer)?.points;
+        start = unfold(&fixed, &start)?.points;
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
         (law, start) = distances.learn(start, &families, polish)?;
     }
@@ -142,6 +143,11 @@ pub(crate) fn settle(
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = measured.as_ref().map_or(&*terms, |measured| &measured.pairs);
+    if shape.pull == 0.0 {
+        // Folds show where the map is near its minimum.
+        start = polish(&mut newton, pairs, &start, ROUGH, observer)?.points;
+        start = unfold(pairs, &start)?.points;
+    }
     let mut polished = polish(&mut newton, pairs, &start, params.polish_stop.rule(), observer)?;
     observer.finished(Stage::Polish);
 
