@@ -92,11 +92,10 @@ impl Factored {
         Ok(factored)
     }
 
-    /// Factors another matrix with the same places of entries, without ordering anew.
+    /// Factors another matrix with the same places of entries and entries of like size, without ordering anew and
+    /// without a check.
     pub fn refactor(self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        let factored = Self::numeric(self.symbolic, self.values, matrix)?;
-        factored.check(matrix)?;
-        Ok(factored)
+        Self::numeric(self.symbolic, self.values, matrix)
     }
 
     /// The factor, in the memory of `values`, whatever they are.

@@ -97,32 +97,35 @@ fn pass(
     pairs: &PairDistances,
     incidence: &Incidence,
     unfolded: &mut Unfolded,
-    mut seeds: Vec<u32>,
+    seeds: Vec<u32>,
     moved: &mut [bool],
 ) -> bool {
     let mended_before = unfolded.mended;
     let mut covered = vec![false; unfolded.points.len()];
     let mut claimed = vec![0; unfolded.points.len()];
     let mut batch = 0;
-    while !seeds.is_empty() {
+    let mut waiting: Vec<Patch> =
+        seeds.par_iter().filter_map(|&seed| Patch::around(seed, incidence)).collect();
+    while !waiting.is_empty() {
         batch += 1;
-        let mut patches = Vec::new();
         // Patches that have an object in common wait for each other.
-        seeds.retain(|&seed| {
-            if covered[seed as usize] {
-                return false;
+        let mut patches = Vec::new();
+        let mut later = Vec::new();
+        for patch in waiting {
+            if covered[patch.seed() as usize] {
+                continue;
             }
-            let Some(patch) = Patch::around(seed, incidence) else { return false };
-            if patch.objects().any(|object| claimed[object as usize] == batch) {
-                // Nothing of lesser strain may go before it either.
-                patch.objects().for_each(|object| claimed[object as usize] = batch);
-                return true;
-            }
+            let free = patch.objects().all(|object| claimed[object as usize] != batch);
+            // Nothing of lesser strain may go before it either.
             patch.objects().for_each(|object| claimed[object as usize] = batch);
-            patch.core().for_each(|object| covered[object as usize] = true);
-            patches.push(patch);
-            false
-        });
+            if free {
+                patch.core().for_each(|object| covered[object as usize] = true);
+                patches.push(patch);
+            } else {
+                later.push(patch);
+            }
+        }
+        waiting = later;
         unfolded.tried += patches.len();
         let points = &unfolded.points;
         let mended: Vec<Option<Vec<Point>>> =

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
-const ROUGH: StopRule = StopRule { max_iterations: 40, tolerance: 1e-3 };
+const ROUGH: StopRule = StopRule { max_iterations: 20, tolerance: 1e-3 };
 /// The polish from one law to the next.
 const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
 
@@ -143,11 +143,6 @@ pub(crate) fn settle(
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
     let pairs = measured.as_ref().map_or(&*terms, |measured| &measured.pairs);
-    if shape.pull == 0.0 {
-        // Folds show where the map is near its minimum.
-        start = polish(&mut newton, pairs, &start, ROUGH, observer)?.points;
-        start = unfold(pairs, &start)?.points;
-    }
     let mut polished = polish(&mut newton, pairs, &start, params.polish_stop.rule(), observer)?;
     observer.finished(Stage::Polish);
 

@@ -56,6 +56,10 @@ impl Patch {
         Some(Self { seed, core, free, ring })
     }
 
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
     pub fn core(&self) -> impl Iterator<Item = u32> {
         self.core.iter().copied()
     }
