@@ -16,9 +16,12 @@
 //! T. Yairi, K. Hori, K. Hirama, "Qualitative map learning based on co-visibility of
 //! objects" (the CoviMap paper).
 
-use covimap_embed::{ClassicalScaling, DistanceMatrix, classical_scaling};
+use covimap_embed::{ClassicalScaling, DistanceMatrix, PairDistances, classical_scaling, stress1};
 
-use crate::{ClassicalParams, CoVisibility, LandmarkId, MapError, Phi};
+use crate::component::{Basis, ComponentMap, put_in_frame};
+use crate::{
+    ClassicalParams, CoVisibility, LandmarkId, LinkGraph, MapError, Observer, Phi, SeamsReport, Stage,
+};
 
 /// Most landmarks of a component that the dense method accepts: 3000 take about 72 MB a table and
 /// some ten seconds.
@@ -88,6 +91,51 @@ pub(crate) fn solve(
         return Err(MapError::TooLargeForClassical { landmarks: members.len(), limit: CLASSICAL_LIMIT });
     }
     Ok(classical_scaling(&squared_distances(counts, members, params)?)?)
+}
+
+/// The map of one component by the paper's method; it counts as one region.
+pub(crate) fn map_component(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    members: &[u32],
+    params: &ClassicalParams,
+    observer: &dyn Observer,
+) -> Result<ComponentMap, MapError> {
+    observer.started(Stage::Classical, None);
+    if observer.interrupted() {
+        return Err(MapError::Interrupted);
+    }
+    let mut points = solve(counts, members, params)?.points;
+    put_in_frame(&mut points, &mut []);
+    observer.finished(Stage::Classical);
+    let pairs = paper_pairs(counts, graph, members, params);
+    Ok(ComponentMap {
+        stress1: stress1(&pairs, &points),
+        region: vec![0; members.len()],
+        basis: Basis { polished: points.clone(), law: None, sensor: None },
+        points,
+        regions: 1,
+        branch_of: vec![0],
+        seams: SeamsReport::default(),
+        path_pull: 0.0,
+        iterations: 0,
+        converged: true,
+        distances: None,
+        ranges: None,
+    })
+}
+
+/// The co-seen pairs with the paper's distances, all of weight 1.
+fn paper_pairs(
+    counts: &CoVisibility,
+    graph: &LinkGraph,
+    members: &[u32],
+    params: &ClassicalParams,
+) -> PairDistances {
+    graph.restricted_to(members).to_pairs_with(|i, j| {
+        let f = counts.frequency(LandmarkId(members[i as usize]), LandmarkId(members[j as usize]));
+        (params.squared_distance(f).sqrt(), 1.0)
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! A log of which landmarks were seen together in, a global map out.
 
 mod aliases;
+mod assembly;
 mod bytes;
 mod classical;
 mod component;

@@ -1,26 +1,21 @@
 //! The pipeline: a log in, a [`GlobalMap`] out.
 
-use covimap_embed::{EmbedError, PairDistances, Point, stress1};
+use covimap_embed::{EmbedError, Point};
 
 use crate::aliases;
+use crate::assembly;
 use crate::classical;
 use crate::component::{Basis, ComponentMap, Evidence, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
 use crate::ranges;
-use crate::report::warnings;
 use crate::sensing;
 use crate::shape::Shape;
 use crate::state::without_ranges;
-use crate::stitch::flatness;
 use crate::{
-    BuildReport, ClassicalParams, CoVisibility, ComponentReport, GlobalMap, HonestLinks, HonestyReport,
-    LandmarkId, LinkGraph, MapError, MapState, MapperParams, Method, Observer, PlacedLandmark, SeamsReport,
-    Sensing, SightLines, SightingLog, Stage,
+    CoVisibility, GlobalMap, HonestLinks, HonestyReport, LandmarkId, LinkGraph, MapError, MapState,
+    MapperParams, Method, Observer, Sensing, SightLines, SightingLog,
 };
-
-/// Least over greatest spread of the partners of a landmark below which they lie on a line.
-const ON_A_LINE: f64 = 0.1;
 
 /// Builds maps with one set of checked parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,7 +135,7 @@ impl Mapper {
             Method::Classical => components
                 .iter()
                 .map(|members| {
-                    classical_component(&counts, &graph, members, &self.params.classical, observer)
+                    classical::map_component(&counts, &graph, members, &self.params.classical, observer)
                 })
                 .collect::<Result<_, MapError>>()?,
         };
@@ -166,8 +161,8 @@ impl Mapper {
         sensing: Option<Sensing>,
     ) -> Result<GlobalMap, MapError> {
         let Known { log, counts, graph, components, .. } = *known;
-        let landmarks = place(counts, graph, components, &maps);
-        let report = report(counts, graph, honesty, components, maps, &landmarks, log);
+        let landmarks = assembly::place(counts, graph, components, &maps);
+        let report = assembly::report(counts, graph, honesty, components, maps, &landmarks, log);
         let sight_lines = SightLines::find(&landmarks, counts, graph, components);
         let map = GlobalMap::from_parts(log.names().clone(), landmarks, self.params.clone(), report)?
             .with_sight_lines(sight_lines)?;
@@ -270,127 +265,6 @@ fn check_information(counts: &CoVisibility) -> Result<(), MapError> {
 pub(crate) fn honest_links(counts: &CoVisibility) -> (LinkGraph, HonestyReport) {
     let honest = HonestLinks::judge(counts);
     (LinkGraph::from_honest(counts, &honest), honest.report())
-}
-
-fn classical_component(
-    counts: &CoVisibility,
-    graph: &LinkGraph,
-    members: &[u32],
-    params: &ClassicalParams,
-    observer: &dyn Observer,
-) -> Result<ComponentMap, MapError> {
-    observer.started(Stage::Classical, None);
-    if observer.interrupted() {
-        return Err(MapError::Interrupted);
-    }
-    let mut points = classical::solve(counts, members, params)?.points;
-    put_in_frame(&mut points, &mut []);
-    observer.finished(Stage::Classical);
-    let pairs = paper_pairs(counts, graph, members, params);
-    Ok(ComponentMap {
-        stress1: stress1(&pairs, &points),
-        region: vec![0; members.len()],
-        basis: Basis { polished: points.clone(), law: None, sensor: None },
-        points,
-        regions: 1,
-        branch_of: vec![0],
-        seams: SeamsReport::default(),
-        path_pull: 0.0,
-        iterations: 0,
-        converged: true,
-        distances: None,
-        ranges: None,
-    })
-}
-
-/// The co-seen pairs with the paper's distances, all of weight 1.
-fn paper_pairs(
-    counts: &CoVisibility,
-    graph: &LinkGraph,
-    members: &[u32],
-    params: &ClassicalParams,
-) -> PairDistances {
-    graph.restricted_to(members).to_pairs_with(|i, j| {
-        let f = counts.frequency(LandmarkId(members[i as usize]), LandmarkId(members[j as usize]));
-        (params.squared_distance(f).sqrt(), 1.0)
-    })
-}
-
-fn place(
-    counts: &CoVisibility,
-    graph: &LinkGraph,
-    components: &[Vec<u32>],
-    maps: &[ComponentMap],
-) -> Vec<PlacedLandmark> {
-    let mut landmarks = vec![PlacedLandmark::default(); graph.landmarks()];
-    let mut first_region = 0;
-    for (component, (members, map)) in components.iter().zip(maps).enumerate() {
-        for (place, &landmark) in members.iter().enumerate() {
-            let position: Point = map.points[place];
-            landmarks[landmark as usize] = PlacedLandmark {
-                position,
-                component: component as u32,
-                region: first_region + map.region[place],
-                sightings: counts.sightings()[landmark as usize],
-                partners: graph.of(landmark).len() as u32,
-                branch: map.branch_of[map.region[place] as usize],
-                loose: false,
-            };
-        }
-        first_region += map.regions as u32;
-    }
-    let loose: Vec<bool> = (0..landmarks.len() as u32).map(|i| is_loose(graph, &landmarks, i)).collect();
-    landmarks.iter_mut().zip(loose).for_each(|(landmark, loose)| landmark.loose = loose);
-    landmarks
-}
-
-/// Whether the links of a landmark leave it a choice of places.
-fn is_loose(graph: &LinkGraph, landmarks: &[PlacedLandmark], landmark: u32) -> bool {
-    let links = graph.of(landmark);
-    links.len() < 3 || flatness(links.iter().map(|link| landmarks[link.to as usize].position)) < ON_A_LINE
-}
-
-fn report(
-    counts: &CoVisibility,
-    graph: &LinkGraph,
-    honesty: HonestyReport,
-    components: &[Vec<u32>],
-    maps: Vec<ComponentMap>,
-    landmarks: &[PlacedLandmark],
-    log: &SightingLog,
-) -> BuildReport {
-    let mut first_region = 0;
-    let component = |(members, map): (&Vec<u32>, ComponentMap)| {
-        let seams = map.seams.numbered_from(first_region);
-        first_region += map.regions as u32;
-        ComponentReport {
-            landmarks: members.len() as u64,
-            regions: map.regions as u64,
-            pairs: members.iter().map(|&member| graph.of(member).len() as u64).sum::<u64>() / 2,
-            stress1: map.stress1,
-            iterations: map.iterations as u64,
-            converged: map.converged,
-            distances: map.distances,
-            path_pull: map.path_pull,
-            ranges: map.ranges,
-            seams,
-        }
-    };
-    let components: Vec<ComponentReport> = components.iter().zip(maps).map(component).collect();
-    let pairs: u64 = components.iter().map(|component| component.pairs).sum();
-    let squares: f64 = components.iter().map(|c| c.stress1 * c.stress1 * c.pairs as f64).sum();
-    BuildReport {
-        steps: counts.steps(),
-        sightings: counts.sightings().iter().map(|&n| u64::from(n)).sum(),
-        landmarks: counts.landmarks() as u64,
-        pairs,
-        regions: components.iter().map(|component| component.regions).sum(),
-        stress1: (squares / pairs.max(1) as f64).sqrt(),
-        honesty,
-        update: None,
-        warnings: warnings(counts, graph, honesty, landmarks, &components, log.names()),
-        components,
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use covimap_embed::{Correspondence, ProcrustesOptions, Reflection, procrustes};
 
 use super::*;
 use crate::fixtures::{distance, log_of, looks, on_threads, scattered};
-use crate::{DistanceChoice, Silent, StopParams};
+use crate::{DistanceChoice, Silent, Stage, StopParams};
 
 fn mapper(method: Method) -> Mapper {
     Mapper::new(MapperParams { method, ..MapperParams::default() }).unwrap()
