@@ -74,9 +74,12 @@ impl Patch {
         };
         let all = (-HALF..=HALF).flat_map(|x| (-HALF..=HALF).map(move |y| [x, y]));
         let coarse: Vec<[i32; 2]> = all.filter(is_inside).collect();
-        let judged = QUALITIES.map(|(quality, prior)| {
-            let logs: Vec<f64> =
-                coarse.iter().map(|&at| sight.log_likelihood(place(at, side), quality, blur)).collect();
+        let qualities = QUALITIES.map(|(quality, _)| quality);
+        let logs: Vec<[f64; QUALITIES.len()]> =
+            coarse.iter().map(|&at| sight.log_likelihoods(place(at, side), qualities, blur)).collect();
+        let judged: [_; QUALITIES.len()] = std::array::from_fn(|k| {
+            let (quality, prior) = QUALITIES[k];
+            let logs: Vec<f64> = logs.iter().map(|logs| logs[k]).collect();
             (log_sum(&logs) + f64::ln(prior), quality, prior, logs)
         });
         let (_, quality, prior, logs) =
@@ -98,7 +101,8 @@ impl Patch {
             for [dx, dy] in (0..pieces).flat_map(|x| (0..pieces).map(move |y| [x, y])) {
                 let at = [at[0] * pieces + dx, at[1] * pieces + dy];
                 let [x, y] = place(at, fine);
-                let log = sight.log_likelihood([x + shift, y + shift], quality, 0.0) + log_area;
+                let [log] = sight.log_likelihoods([x + shift, y + shift], [quality], 0.0);
+                let log = log + log_area;
                 cells.push(Cell { at, log });
             }
         }

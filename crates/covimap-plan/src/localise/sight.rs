@@ -90,21 +90,26 @@ impl Sight {
         Self { witnesses, elsewhere, falsely, range: sensor.range }
     }
 
-    /// `ln L(y)` at a place, for looks of this quality. The edges are softened by `blur` more, so that a
+    /// `ln L(y)` at a place, for looks of each of these qualities. The edges are softened by `blur` more, so that a
     /// coarse grid misses nothing.
-    pub fn log_likelihood(&self, place: Point, quality: f64, blur: f64) -> f64 {
+    pub fn log_likelihoods<const N: usize>(&self, place: Point, qualities: [f64; N], blur: f64) -> [f64; N] {
         // A look without a sighting has no false one either.
-        let mut log = if self.elsewhere > 0 { self.elsewhere as f64 * self.falsely.ln() } else { 0.0 };
-        let mut product = 1.0;
+        let elsewhere = if self.elsewhere > 0 { self.elsewhere as f64 * self.falsely.ln() } else { 0.0 };
+        let mut logs = [elsewhere; N];
+        let mut products = [1.0; N];
         for witness in &self.witnesses {
-            let chance = quality * self.chance(witness, place, blur);
-            product *= if witness.seen { self.falsely + (1.0 - self.falsely) * chance } else { 1.0 - chance };
-            if product < SMALL {
-                log += product.ln();
-                product = 1.0;
+            let from_here = self.chance(witness, place, blur);
+            for ((log, product), quality) in logs.iter_mut().zip(&mut products).zip(qualities) {
+                let chance = quality * from_here;
+                *product *=
+                    if witness.seen { self.falsely + (1.0 - self.falsely) * chance } else { 1.0 - chance };
+                if *product < SMALL {
+                    *log += product.ln();
+                    *product = 1.0;
+                }
             }
         }
-        log + product.ln()
+        std::array::from_fn(|k| logs[k] + products[k].ln())
     }
 
     /// Whether a landmark is more likely truly seen from a place than falsely.
@@ -115,8 +120,9 @@ impl Sight {
 
     /// `p_i v_i(y)`.
     fn chance(&self, witness: &Witness, place: Point, blur: f64) -> f64 {
-        let edge = if blur > 0.0 { witness.edge.hypot(blur) } else { witness.edge };
-        let beyond = (distance(witness.at, place) - self.range) / edge;
+        let edge = (witness.edge * witness.edge + blur * blur).sqrt();
+        let [x, y] = [witness.at[0] - place[0], witness.at[1] - place[1]];
+        let beyond = ((x * x + y * y).sqrt() - self.range) / edge;
         if beyond > OUT_OF_SIGHT { 0.0 } else { witness.detectability / (1.0 + beyond.exp()) }
     }
 }

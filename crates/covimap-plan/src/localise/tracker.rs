@@ -163,6 +163,7 @@ impl Tracker {
         let mut order: Vec<usize> = (0..belief.len()).collect();
         order.sort_by_key(|&k| tile(&belief[k]));
         let mut logs = QUALITIES.map(|_| vec![f64::NEG_INFINITY; belief.len()]);
+        let qualities = QUALITIES.map(|(quality, _)| quality);
         for cells in order.chunk_by(|&a, &b| tile(&belief[a]) == tile(&belief[b])) {
             let (component, [column, row]) = tile(&belief[cells[0]]);
             let side = self.side(component);
@@ -170,8 +171,8 @@ impl Tracker {
             let sight = self.localiser.sight(look, component, centre);
             for &k in cells {
                 let place: Point = belief[k].at.map(|c| f64::from(c) * side);
-                for (logs, (quality, prior)) in logs.iter_mut().zip(QUALITIES) {
-                    let log = sight.log_likelihood(place, quality, side / 4.0);
+                let seen_from_here = sight.log_likelihoods(place, qualities, side / 4.0);
+                for ((logs, log), (_, prior)) in logs.iter_mut().zip(seen_from_here).zip(QUALITIES) {
                     logs[k] = log + belief[k].mass.ln() + f64::ln(prior);
                 }
             }
