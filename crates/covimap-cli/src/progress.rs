@@ -217,8 +217,8 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Regions | Stage::LocalMaps => "regions",
         Stage::Refine => "iterations at most",
         Stage::Sensor => "components",
-        Stage::Polish => "steps at most",
-        Stage::Stitch | Stage::Distances | Stage::Classical => "steps",
+        Stage::Distances | Stage::Polish => "steps at most",
+        Stage::Stitch | Stage::Classical => "steps",
     }
 }
 

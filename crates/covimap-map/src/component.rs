@@ -3,7 +3,7 @@
 use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
 use rayon::prelude::*;
 
-use crate::distances::{ComponentSteps, DistanceReport, Distances, Law};
+use crate::distances::{self, ComponentSteps, DistanceReport, Distances, Law};
 use crate::places::{SeenSets, Sensor, refine};
 use crate::shape::Shape;
 use crate::stitch::{Stitched, stitch};
@@ -123,11 +123,12 @@ pub(crate) fn settle(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    begin(Stage::Distances, None, observer)?;
+    let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
+    let steps = ROUGH.max_iterations + distances::ROUNDS * A_FEW_STEPS.max_iterations;
+    begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
     let fixed = graph.to_pairs();
     let mut start = shape.start(&fixed, start)?;
     let distances = Distances::new(graph, &fixed, evidence.counts, evidence.members, evidence.steps, seed);
-    let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
     let terms = shape.terms(&fixed)?;
     let mut newton = Newton::new(&terms);
     let mut law = None;

@@ -11,10 +11,9 @@ use crate::places::SeenSets;
 use crate::ranges;
 use crate::sensing;
 use crate::shape::Shape;
-use crate::state::without_ranges;
 use crate::{
-    CoVisibility, GlobalMap, HonestLinks, HonestyReport, LandmarkId, LinkGraph, MapError, MapState,
-    MapperParams, Method, Observer, Sensing, SightLines, SightingLog,
+    CoVisibility, GlobalMap, HonestLinks, HonestyReport, LandmarkId, LinkGraph, MapError, MapperParams,
+    Method, Observer, Sensing, SightLines, SightingLog,
 };
 
 /// Builds maps with one set of checked parameters.
@@ -43,17 +42,6 @@ impl Mapper {
     pub fn build(&self, log: &SightingLog, observer: &dyn Observer) -> Result<GlobalMap, MapError> {
         let counts = CoVisibility::count(log, observer)?;
         Ok(self.build_known(log, counts, observer)?.map)
-    }
-
-    /// As [`Mapper::build`], and keeps what is needed to go on when there are more steps: see [`MapState`].
-    ///
-    /// # Errors
-    /// As [`Mapper::build`], and [`MapError::RangesInState`] for a log with ranges.
-    pub fn build_with_state(&self, log: SightingLog, observer: &dyn Observer) -> Result<MapState, MapError> {
-        without_ranges(&log)?;
-        let counts = CoVisibility::count(&log, observer)?;
-        let built = self.build_known(&log, counts, observer)?;
-        Ok(MapState::new(log, built))
     }
 
     /// Maps a log that is counted already.

@@ -54,7 +54,7 @@ pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
 
 /// Rounds of fitting and a few steps of the polish: with two, folds stay; more than five change little.
-const ROUNDS: usize = 5;
+pub(crate) const ROUNDS: usize = 5;
 /// Links a landmark that a fit asks for: half as many again as coordinates.
 const LINKS_A_LANDMARK: usize = 3;
 /// A pair that keeps less of its weight is doubted.

@@ -1,10 +1,9 @@
 //! Takes blocks of text apart, line by line.
 
-use std::borrow::Cow;
-
 use super::blocks::{Block, Limits};
 use super::interner::Interner;
 use super::problem::{OnBadLine, Problems};
+use super::shown::Shown;
 use super::tokens::Tokens;
 
 /// Longest ID in bytes: 4 KiB. A longer one is an error.
@@ -12,22 +11,6 @@ pub const MAX_ID_BYTES: usize = 4096;
 
 /// Reads one line and appends what it shows; `false` if the line is no step, and says what is wrong.
 pub(super) type LineParser = for<'a> fn(&'a str, &mut Shown<'a>) -> Result<bool, String>;
-
-/// What lines show.
-#[derive(Debug, Default)]
-pub(super) struct Shown<'a> {
-    pub ids: Vec<Cow<'a, str>>,
-    /// Place in `ids` and metres of every range.
-    pub ranges: Vec<(usize, f64)>,
-}
-
-impl Shown<'_> {
-    /// Takes back all but the first IDs.
-    pub fn truncate(&mut self, ids: usize) {
-        self.ids.truncate(ids);
-        self.ranges.retain(|range| range.0 < ids);
-    }
-}
 
 /// What holds for all lines of a log.
 #[derive(Debug, Clone, Copy)]

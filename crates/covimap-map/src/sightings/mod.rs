@@ -32,6 +32,7 @@ mod jsonl;
 mod lines;
 mod problem;
 mod read;
+mod shown;
 mod source;
 mod text;
 mod tokens;

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::lines::Shown;
+use super::shown::Shown;
 
 /// Reads one line; it always is a step.
 pub(super) fn parse_line<'a>(line: &'a str, shown: &mut Shown<'a>) -> Result<bool, String> {

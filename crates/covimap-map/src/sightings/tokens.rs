@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use super::Range;
 use super::interner::{Interner, NameHash};
-use super::lines::Shown;
 use super::problem::Problems;
+use super::shown::Shown;
 
 /// The steps of one block.
 #[derive(Debug, Default)]

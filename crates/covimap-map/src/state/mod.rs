@@ -13,7 +13,7 @@ use crate::component::Basis;
 use crate::distances::Law;
 use crate::mapper::Built;
 use crate::places::Sensor;
-use crate::{CoVisibility, GlobalMap, MapError, Observer, SightingLog, UpdateReport, update};
+use crate::{CoVisibility, GlobalMap, MapError, Mapper, Observer, SightingLog};
 
 /// A map with what is needed to go on from it.
 ///
@@ -66,6 +66,19 @@ pub(crate) struct Rules {
     pub sensor: Option<Sensor>,
 }
 
+impl Mapper {
+    /// As [`Mapper::build`], and keeps what is needed to go on when there are more steps: see [`MapState`].
+    ///
+    /// # Errors
+    /// As [`Mapper::build`], and [`MapError::RangesInState`] for a log with ranges.
+    pub fn build_with_state(&self, log: SightingLog, observer: &dyn Observer) -> Result<MapState, MapError> {
+        without_ranges(&log)?;
+        let counts = CoVisibility::count(&log, observer)?;
+        let built = self.build_known(&log, counts, observer)?;
+        Ok(MapState::new(log, built))
+    }
+}
+
 impl MapState {
     /// Of a map for which everything was solved.
     pub(crate) fn new(log: SightingLog, built: Built) -> Self {
@@ -102,24 +115,6 @@ impl MapState {
     #[must_use]
     pub fn counts(&self) -> &CoVisibility {
         &self.counts
-    }
-
-    /// Adds the steps of a log that continues this one, and brings the map up to date; the settings are those of
-    /// the build.
-    ///
-    /// Only landmarks of which there is new evidence, and those that they push, are solved again; the others keep
-    /// their places to the last bit, and the map keeps its frame. See `docs/maths/updating.md`. Where too much has
-    /// changed, everything is solved again and the result laid onto the old map; [`UpdateReport::whole`] says why.
-    /// The same log, cut at the same places, gives the same map for any number of threads.
-    ///
-    /// # Errors
-    /// As [`crate::Mapper::build`] for the joined log, [`MapError::TooManySteps`], and
-    /// [`MapError::RangesInState`] for steps with ranges. The state is then as it was.
-    pub fn update(&mut self, later: &SightingLog, observer: &dyn Observer) -> Result<UpdateReport, MapError> {
-        without_ranges(later)?;
-        let (next, report) = update::after(self, later, observer)?;
-        *self = next;
-        Ok(report)
     }
 }
 

@@ -4,7 +4,7 @@ use covimap_embed::Point;
 use petgraph::unionfind::UnionFind;
 
 use super::Joined;
-use super::seat::Fit;
+use super::fit::Fit;
 use crate::stitch::SURE;
 use crate::{Hinge, LinkGraph, PlacedLandmark, SeamReport};
 

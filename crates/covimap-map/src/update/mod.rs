@@ -19,13 +19,14 @@
 
 mod draft;
 mod finish;
+mod fit;
 mod refine;
 mod relax;
 mod seat;
 mod whole;
 
 use crate::mapper::honest_links;
-use crate::state::{Ground, members};
+use crate::state::{Ground, members, without_ranges};
 use crate::{
     CoVisibility, GlobalMap, HonestyReport, LinkGraph, MapError, MapState, Mapper, MapperParams, Method,
     Observer, SightingLog, UpdateReport, aliases,
@@ -54,8 +55,28 @@ struct Joined<'a> {
     charts: Vec<Vec<u32>>,
 }
 
+impl MapState {
+    /// Adds the steps of a log that continues this one, and brings the map up to date; the settings are those of
+    /// the build.
+    ///
+    /// Only landmarks of which there is new evidence, and those that they push, are solved again; the others keep
+    /// their places to the last bit, and the map keeps its frame. See `docs/maths/updating.md`. Where too much has
+    /// changed, everything is solved again and the result laid onto the old map; [`UpdateReport::whole`] says why.
+    /// The same log, cut at the same places, gives the same map for any number of threads.
+    ///
+    /// # Errors
+    /// As [`crate::Mapper::build`] for the joined log, [`MapError::TooManySteps`], and
+    /// [`MapError::RangesInState`] for steps with ranges. The state is then as it was.
+    pub fn update(&mut self, later: &SightingLog, observer: &dyn Observer) -> Result<UpdateReport, MapError> {
+        without_ranges(later)?;
+        let (next, report) = after(self, later, observer)?;
+        *self = next;
+        Ok(report)
+    }
+}
+
 /// The state after more steps, and what that took.
-pub(crate) fn after(
+fn after(
     old: &MapState,
     later: &SightingLog,
     observer: &dyn Observer,
