@@ -43,7 +43,7 @@ fn an_explorer_starts_where_a_wanderer_does_and_goes_its_own_way() {
 }
 
 /// The mean of `1 / (1 + n)` over the landmarks of a world, each seen in n steps, goes with the variances of their places.
-/// After 300 steps it was 0.80 of that of a wandering robot over 500 worlds of each kind, and less than 0.9 in 24 of 25 sets of
+/// After 300 steps it was 0.82 of that of a wandering robot over 500 worlds of each kind, and less than 0.9 in 24 of 25 sets of
 /// as many worlds as here.
 #[test]
 fn an_explorer_knows_more_after_300_steps() {
@@ -53,7 +53,7 @@ fn an_explorer_knows_more_after_300_steps() {
         steps.iter().map(|&n| 1.0 / (1.0 + f64::from(n))).sum::<f64>() / landmarks as f64
     };
     let (mut exploring, mut wandering) = (0.0, 0.0);
-    for (floor, landmarks) in [("hall", 100), ("office", 200), ("blocks", 200), ("horseshoe", 200)] {
+    for (floor, landmarks) in [("hall", 100), ("office", 400), ("blocks", 200), ("horseshoe", 200)] {
         let mut spec = SimSpec::large(floor.parse::<Floor>().unwrap(), landmarks, 40);
         spec.run.steps = 300;
         for seed in 1..=20 {
@@ -82,11 +82,11 @@ fn an_explorer_loses_nothing_late() {
     assert!((0..2).all(|k| exploring[k] < 1.15 * wandering[k]), "{exploring:?} {wandering:?}");
 }
 
-/// Measured over ten seeds: 1.1 to 1.2 times the error found, after 1000 steps.
+/// Measured over 15 seeds each: 1.3 times the error found in halls and blocks, 1.0 to 1.7 times in single worlds.
 #[test]
 fn the_error_that_a_map_tells_of_itself_is_about_the_error_found() {
     let (mut told, mut found) = (0.0, 0.0);
-    for (floor, seed) in [(Floor::Hall {}, 1), (Floor::Hall {}, 2), ("office".parse().unwrap(), 3)] {
+    for (floor, seed) in [(Floor::Hall {}, 1), (Floor::Hall {}, 2), ("blocks".parse().unwrap(), 3)] {
         let spec = SimSpec::large(floor, 150, 10);
         let world = World::new(&spec.world, seed).unwrap();
         let (errors, own) = judged(&world, &wandered(&world, &spec, seed));

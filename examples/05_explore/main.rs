@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let text = |k: usize, default: &str| args.get(k).map_or(default, String::as_str).to_owned();
     let (world, landmarks, seeds) =
-        (text(0, "office"), text(1, "100").parse()?, text(2, "2").parse::<u64>()?);
+        (text(0, "office"), text(1, "400").parse()?, text(2, "2").parse::<u64>()?);
     let mut spec = match world.as_str() {
         "room" => SimSpec::paper_room(landmarks, 1.5, 1000),
         floor => SimSpec::large(floor.parse::<Floor>()?, landmarks, 40),
