@@ -1,16 +1,15 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
+use std::borrow::Cow;
+
 use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
-use rayon::prelude::*;
 
 use crate::distances::{self, ComponentSteps, DistanceReport, Distances, Law};
+use crate::layout::{Ground, Layout, lay_out};
 use crate::places::{SeenSets, Sensor, refine};
 use crate::shape::Shape;
-use crate::stitch::{Stitched, stitch};
-use crate::{
-    AutoParams, CoVisibility, LinkGraph, LocalMap, MapError, Observer, RangeReport, Region, RegionCover,
-    SeamsReport, Stage, local_map,
-};
+use crate::stitch::Stitched;
+use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport, Stage};
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
 const ROUGH: StopRule = StopRule { max_iterations: 20, tolerance: 1e-3 };
@@ -65,81 +64,67 @@ pub(crate) fn map_component(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<ComponentMap, MapError> {
-    let (cover, stitched) = stitched(graph, params, observer)?;
+    let fixed = graph.to_pairs();
+    let distances = evidence.distances(graph, &fixed, seed);
+    let ground = Ground { graph, distances: distances.as_ref(), params, observer };
+    let Layout { cover, stitched, law } = lay_out(&ground)?;
     let shape = Shape::of(graph, &cover, &stitched);
     let Stitched { points, branch_of, seams } = stitched;
-    let settled = settle(graph, evidence, points, shape, params, seed, observer)?;
+    let start = Start { points, shape, law };
+    let settled = settle(&ground, &fixed, evidence, start)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
 }
 
-/// The first map of a connected graph: regions, each solved by itself, in one frame.
-///
-/// Regions at a hinge are widened to all landmarks that their cores are linked to, and solved and stitched
-/// once more: what more they share may decide the side.
-pub(crate) fn stitched(
-    graph: &LinkGraph,
-    params: &AutoParams,
-    observer: &dyn Observer,
-) -> Result<(RegionCover, Stitched), MapError> {
-    begin(Stage::Regions, None, observer)?;
-    let mut cover = RegionCover::new(graph, params.regions);
-    observer.finished(Stage::Regions);
-
-    begin(Stage::LocalMaps, Some(cover.regions().len() as u64), observer)?;
-    let solve = |region: &Region| {
-        if observer.interrupted() {
-            return Err(MapError::Interrupted);
-        }
-        let map = local_map::solve(graph, region, params.local_stop.rule())?;
-        observer.advanced(1);
-        Ok(map)
-    };
-    let mut maps = cover.regions().par_iter().map(solve).collect::<Result<Vec<_>, MapError>>()?;
-    observer.finished(Stage::LocalMaps);
-
-    begin(Stage::Stitch, None, observer)?;
-    let mut stitched = stitch(graph, &cover, &maps)?;
-    let hinged = cover.widen(graph, &stitched.seams.hinges, params.regions);
-    let widened: Vec<LocalMap> =
-        hinged.par_iter().map(|&region| solve(&cover.regions()[region])).collect::<Result<_, _>>()?;
-    if !hinged.is_empty() {
-        hinged.iter().zip(widened).for_each(|(&region, map)| maps[region] = map);
-        stitched = stitch(graph, &cover, &maps)?;
-    }
-    observer.finished(Stage::Stitch);
-    Ok((cover, stitched))
+/// Where a component is to be polished from.
+pub(crate) struct Start {
+    /// Positions in map units.
+    pub points: Vec<Point>,
+    pub shape: Shape,
+    /// What is known of the distance function.
+    pub law: Option<Law>,
 }
 
-/// Polishes and refines a connected component from a start in map units; it counts as one region.
+impl Evidence<'_> {
+    /// What the log tells of the links of the component, with the distances `fixed` of the logarithm.
+    pub fn distances<'a>(
+        &self,
+        graph: &LinkGraph,
+        fixed: &'a PairDistances,
+        seed: u64,
+    ) -> Option<Distances<'a>> {
+        Distances::new(graph, fixed, self.counts, self.members, self.steps, seed)
+    }
+}
+
+/// Polishes and refines a connected component; it counts as one region.
 ///
 /// The distance function is learnt where links alone make the map: path lengths hold with the fixed one.
 pub(crate) fn settle(
-    graph: &LinkGraph,
+    ground: &Ground,
+    fixed: &PairDistances,
     evidence: &Evidence,
-    start: Vec<Point>,
-    shape: Shape,
-    params: &AutoParams,
-    seed: u64,
-    observer: &dyn Observer,
+    start: Start,
 ) -> Result<ComponentMap, MapError> {
+    let Ground { graph, distances, params, observer } = *ground;
+    let Start { points, shape, law } = start;
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
     let steps = ROUGH.max_iterations + distances::ROUNDS * A_FEW_STEPS.max_iterations;
     begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
-    let fixed = graph.to_pairs();
-    let mut start = shape.start(&fixed, start)?;
-    let distances = Distances::new(graph, &fixed, evidence.counts, evidence.members, evidence.steps, seed);
-    let terms = shape.terms(&fixed)?;
+    let mut start = shape.start(fixed, points)?;
+    let terms = shape.terms(fixed)?;
     let mut newton = Newton::new(&terms);
-    let mut law = None;
-    if let Some(distances) = distances.as_ref().filter(|_| !families.is_empty()) {
-        start = polish(&mut newton, &fixed, &start, ROUGH, observer)?.points;
-        start = unfold(&fixed, &start)?.points;
+    let learning = distances.filter(|_| !families.is_empty());
+    let mut learnt = None;
+    if let Some(distances) = learning {
+        let first = law.map_or(Cow::Borrowed(fixed), |law| Cow::Owned(distances.undoubted(&law)));
+        start = polish(&mut newton, &first, &start, ROUGH, observer)?.points;
+        start = unfold(&first, &start)?.points;
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
-        (law, start) = distances.learn(start, &families, polish)?;
+        (learnt, start) = distances.learn(start, &families, polish)?;
     }
-    let measured =
-        distances.as_ref().zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
+    let law = learnt;
+    let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
@@ -160,10 +145,10 @@ pub(crate) fn settle(
     let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
     Ok(ComponentMap {
         ranges: None,
-        stress1: stress1(measured.as_ref().map_or(&fixed, |measured| &measured.pairs), &points),
+        stress1: stress1(measured.as_ref().map_or(fixed, |measured| &measured.pairs), &points),
         iterations: polished.iterations,
         converged: polished.termination == Termination::Converged,
-        distances: distances.as_ref().map(|distances| distances.report(law.as_ref(), doubted, &points)),
+        distances: distances.map(|distances| distances.report(law.as_ref(), doubted, &points)),
         region: vec![0; points.len()],
         regions: 1,
         branch_of: vec![0],

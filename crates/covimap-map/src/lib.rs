@@ -16,6 +16,7 @@ mod fixtures;
 mod global_map;
 mod honesty;
 mod landmarks;
+mod layout;
 mod links;
 mod local_map;
 mod map_file;
@@ -36,6 +37,7 @@ mod state;
 mod stitch;
 mod truth;
 mod update;
+mod variants;
 
 pub use classical::{CLASSICAL_LIMIT, squared_distances};
 pub use covisibility::CoVisibility;

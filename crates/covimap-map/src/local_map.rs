@@ -6,7 +6,7 @@
 
 use covimap_embed::{DistanceMatrix, EmbedError, PairDistances, Point, StopRule, classical_scaling, smacof};
 
-use crate::{LinkGraph, Region};
+use crate::{LinkGraph, Region, RegionCover};
 
 /// A region's own map, in a frame of its own.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,32 @@ pub(crate) fn solve(graph: &LinkGraph, region: &Region, stop: StopRule) -> Resul
     let start = path_scaling(&pairs)?;
     let solved = smacof(&pairs, &start, stop)?;
     Ok(LocalMap { points: solved.points, stress1: solved.stress1 })
+}
+
+/// Maps a region anew by other distances of its links, from the map it has.
+pub(crate) fn solve_again(
+    pairs: &PairDistances,
+    map: &LocalMap,
+    stop: StopRule,
+) -> Result<LocalMap, EmbedError> {
+    let solved = smacof(pairs, &map.points, stop)?;
+    Ok(LocalMap { points: solved.points, stress1: solved.stress1 })
+}
+
+/// Distance of two landmarks in the local maps of their cores, the mean where both know it; `None` if neither does.
+pub(crate) fn length(cover: &RegionCover, maps: &[LocalMap], ends: [u32; 2]) -> Option<f64> {
+    let own = |region: u32| {
+        let members = &cover.regions()[region as usize].members;
+        let [a, b] = ends.map(|end| members.binary_search(&end).ok());
+        let points = &maps[region as usize].points;
+        let ([ax, ay], [bx, by]) = (points[a?], points[b?]);
+        Some((ax - bx).hypot(ay - by))
+    };
+    let [a, b] = ends.map(|end| own(cover.core_of()[end as usize]));
+    match (a, b) {
+        (Some(a), Some(b)) => Some(0.5 * (a + b)),
+        _ => a.or(b),
+    }
 }
 
 /// Classical scaling of the shortest-path lengths of a connected pair list.

@@ -5,8 +5,9 @@ use covimap_embed::{EmbedError, Point};
 use crate::aliases;
 use crate::assembly;
 use crate::classical;
-use crate::component::{Basis, ComponentMap, Evidence, map_component, put_in_frame, settle};
+use crate::component::{Basis, ComponentMap, Evidence, Start, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
+use crate::layout::Ground;
 use crate::places::SeenSets;
 use crate::ranges;
 use crate::sensing;
@@ -175,7 +176,11 @@ impl Mapper {
             None => map_component(graph, evidence, auto, *seed, observer),
             Some(all) => {
                 let own: Vec<Point> = evidence.members.iter().map(|&member| all[member as usize]).collect();
-                settle(graph, evidence, in_map_units(graph, own)?, Shape::FREE, auto, *seed, observer)
+                let fixed = graph.to_pairs();
+                let distances = evidence.distances(graph, &fixed, *seed);
+                let ground = Ground { graph, distances: distances.as_ref(), params: auto, observer };
+                let start = Start { points: in_map_units(graph, own)?, shape: Shape::FREE, law: None };
+                settle(&ground, &fixed, evidence, start)
             }
         };
         let map = |((members, sets), steps): ((&Vec<u32>, &SeenSets), ComponentSteps)| {

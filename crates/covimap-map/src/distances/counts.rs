@@ -78,6 +78,17 @@ impl Sample {
         Self { links: (0..blocks.len()).collect(), ends: vec![[0, 1]; blocks.len()], blocks }
     }
 
+    /// The pairs whose length is told, and these lengths.
+    pub fn told(&self, lengths: &[Option<f64>]) -> (Self, Vec<f64>) {
+        let told = || (0..self.len()).filter(|&pair| lengths[pair].is_some());
+        let sample = Self {
+            links: told().map(|pair| self.links[pair]).collect(),
+            ends: told().map(|pair| self.ends[pair]).collect(),
+            blocks: told().map(|pair| self.blocks[pair]).collect(),
+        };
+        (sample, lengths.iter().flatten().copied().collect())
+    }
+
     /// Number of pairs.
     pub fn len(&self) -> usize {
         self.links.len()

@@ -44,7 +44,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::links::ALPHA;
-use crate::{CoVisibility, LinkGraph, MapError};
+use crate::local_map::{self, LocalMap};
+use crate::{CoVisibility, LinkGraph, MapError, RegionCover};
 pub use choice::FamilyScore;
 use choice::choose;
 pub(crate) use counts::PairCount;
@@ -136,30 +137,82 @@ impl<'a> Distances<'a> {
         Some(Self { pairs, counts: counts::of_links(graph, counts, members), sample, repetition })
     }
 
-    /// Alternates fit and polish, starting from the map of the fixed logarithm: the law, if there is one, and
-    /// the positions that the rounds lead to.
+    /// The law that local maps ask for: in them no wrong turn of the whole makes distances wrong.
+    pub fn learn_locally(
+        &self,
+        families: &[DistanceFamily],
+        cover: &RegionCover,
+        maps: &[LocalMap],
+    ) -> Option<Law> {
+        let lengths: Vec<Option<f64>> =
+            self.sample.ends.iter().map(|&ends| local_map::length(cover, maps, ends)).collect();
+        let (sample, lengths) = self.sample.told(&lengths);
+        self.fit(families, &sample, &lengths)
+    }
+
+    /// Alternates fit and polish: the law, if there is one, and the positions that the rounds lead to.
     pub fn learn(
         &self,
         mut points: Vec<Point>,
         families: &[DistanceFamily],
         mut polish: impl FnMut(&PairDistances, &[Point]) -> Result<Embedding, MapError>,
     ) -> Result<(Option<Law>, Vec<Point>), MapError> {
-        let mut law = self.fit(families, &points);
+        let mut law = self.fit_to(families, &points);
         for _ in 0..ROUNDS {
             let Some(present) = &law else { break };
             points = polish(&self.measure(present, &points).pairs, &points)?.points;
-            law = self.fit(families, &points).or(law);
+            law = self.fit_to(families, &points).or(law);
         }
         Ok((law, points))
     }
 
-    /// The law that the map asks for. `None` where no family can be fitted or most links would have no length.
-    fn fit(&self, families: &[DistanceFamily], points: &[Point]) -> Option<Law> {
-        let lengths = self.sampled_lengths(points);
-        let (curve, scores) = choose(families, &self.sample, &lengths, self.repetition)?;
-        let trust = Trust::learn(&curve, self.repetition, &self.sampled(points));
+    /// The law that the map asks for.
+    fn fit_to(&self, families: &[DistanceFamily], points: &[Point]) -> Option<Law> {
+        self.fit(families, &self.sample, &self.sampled_lengths(points))
+    }
+
+    /// The law of a sample at known lengths. `None` where no family can be fitted or most links would have no
+    /// length.
+    fn fit(&self, families: &[DistanceFamily], sample: &Sample, lengths: &[f64]) -> Option<Law> {
+        let (curve, scores) = choose(families, sample, lengths, self.repetition)?;
+        let counts = sample.links.iter().map(|&link| self.counts[link]);
+        let pairs: Vec<(PairCount, f64)> = counts.zip(lengths.iter().copied()).collect();
+        let trust = Trust::learn(&curve, self.repetition, &pairs);
         let stretch = self.stretch(&curve);
         self.has_extent(&curve).then_some(Law { curve, stretch, trust, scores })
+    }
+
+    /// Distances and weights of all links under a law, nothing doubted: what is doubted on a map can hide where the
+    /// map is wrong.
+    pub fn undoubted(&self, law: &Law) -> PairDistances {
+        let measure = |(pair, count): (&Pair, &PairCount)| {
+            let (distance, weight, _) = law.measure(*count, f64::INFINITY);
+            Pair { distance, weight, ..*pair }
+        };
+        Self::valid(
+            self.pairs.objects(),
+            self.pairs.pairs().par_iter().zip(&self.counts).map(measure).collect(),
+        )
+    }
+
+    /// The same for the links of `graph` among `members`, numbered by their places in that list; with a map of the
+    /// members, what is too long for it is doubted.
+    pub fn inside(
+        &self,
+        law: &Law,
+        graph: &LinkGraph,
+        members: &[u32],
+        map: Option<&[Point]>,
+    ) -> PairDistances {
+        let pairs = self.pairs.pairs();
+        graph.restricted_to(members).to_pairs_with(|i, j| {
+            let ends = (members[i as usize], members[j as usize]);
+            let link = pairs.binary_search_by_key(&ends, |pair| (pair.i, pair.j));
+            let link = link.expect("links of regions are links of the graph (bug in covimap)");
+            let in_map = map.map_or(f64::INFINITY, |points| length(points, [i, j]));
+            let (distance, weight, _) = law.measure(self.counts[link], in_map);
+            (distance, weight)
+        })
     }
 
     /// Distances and weights of the links under a law, seen from the present map.
@@ -171,9 +224,12 @@ impl<'a> Distances<'a> {
         let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
             self.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();
         let doubted = doubted.iter().filter(|doubted| **doubted).count() as f64 / pairs.len() as f64;
-        let pairs = PairDistances::new(self.pairs.objects(), pairs)
-            .expect("distances of counts are finite and weights positive (bug in covimap)");
-        Measured { pairs, doubted }
+        Measured { pairs: Self::valid(self.pairs.objects(), pairs), doubted }
+    }
+
+    fn valid(landmarks: usize, pairs: Vec<Pair>) -> PairDistances {
+        PairDistances::new(landmarks, pairs)
+            .expect("distances of counts are finite and weights positive (bug in covimap)")
     }
 
     /// Whether most links have a length under a curve. They have none where all frequencies are about equal.

@@ -22,9 +22,15 @@ pub(crate) const SURE: f64 = 30.0;
 /// Trust below which a seam counts as dropped.
 const DROPPED: f64 = 0.01;
 
-/// The branch of every region, and the report on all seams.
-pub(super) fn find(cover: &RegionCover, seams: &[Seam], edges: &[EdgeReport]) -> (Vec<u32>, SeamsReport) {
-    let reports: Vec<SeamReport> = seams.iter().zip(edges).map(report).collect();
+/// The branch of every region, and the report on all seams, of which the fits `used` were taken.
+pub(super) fn find(
+    cover: &RegionCover,
+    seams: &[Seam],
+    used: &[usize],
+    edges: &[EdgeReport],
+) -> (Vec<u32>, SeamsReport) {
+    let reports = seams.iter().zip(used).zip(edges).map(|((seam, &used), edge)| report(seam, used, edge));
+    let reports: Vec<SeamReport> = reports.collect();
     let (dropped, mut used): (Vec<SeamReport>, Vec<SeamReport>) =
         reports.into_iter().partition(|seam| seam.trust < DROPPED);
     used.sort_by(|a, b| b.evidence.total_cmp(&a.evidence).then(a.regions.cmp(&b.regions)));
@@ -49,10 +55,8 @@ pub(super) fn find(cover: &RegionCover, seams: &[Seam], edges: &[EdgeReport]) ->
     (branch_of, SeamsReport { count: seams.len() as u64, dropped, hinges })
 }
 
-fn report((seam, edge): (&Seam, &EdgeReport)) -> SeamReport {
-    let likelier = usize::from(seam.evidence < 0.0);
-    let (used, sign) =
-        if edge.used == Estimate::Alternative { (1 - likelier, -1.0) } else { (likelier, 1.0) };
+fn report(seam: &Seam, used: usize, edge: &EdgeReport) -> SeamReport {
+    let sign = if used == seam.fit_of(Estimate::Given) { 1.0 } else { -1.0 };
     SeamReport {
         regions: [seam.a, seam.b],
         shared: seam.shared as u32,

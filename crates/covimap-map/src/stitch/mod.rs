@@ -16,7 +16,9 @@
 mod branches;
 mod seams;
 
-use covimap_embed::{Point, RelativeFrame, Similarity, SynchroniseOptions, synchronise};
+use covimap_embed::{
+    Estimate, Point, RelativeFrame, Similarity, SynchroniseOptions, Synchronised, synchronise,
+};
 
 use crate::{LinkGraph, LocalMap, MapError, RegionCover, SeamsReport};
 pub(crate) use branches::SURE;
@@ -27,6 +29,9 @@ pub(crate) use seams::flatness;
 const CORE_WEIGHT: f64 = 4.0;
 /// Misfit, in map units, below which seams are not told apart in weight.
 pub(crate) const LEAST_MISFIT: f64 = 0.03;
+
+/// Scales stay.
+const RIGID: SynchroniseOptions = SynchroniseOptions { scale_pull: f64::INFINITY };
 
 /// The maps of all regions in one frame.
 pub(crate) struct Stitched {
@@ -45,23 +50,73 @@ pub(crate) fn stitch(
     maps: &[LocalMap],
 ) -> Result<Stitched, MapError> {
     let seams = seams::find(graph, cover, maps);
-    let edges: Vec<RelativeFrame> = seams.iter().map(relative_frame).collect();
-    let options = SynchroniseOptions { scale_pull: f64::INFINITY };
-    let synchronised = synchronise(maps.len(), &edges, options)?;
-    let points = blend(graph.landmarks(), cover, maps, &synchronised.global_from_node);
-    let (branch_of, seams) = branches::find(cover, &seams, &synchronised.edges);
-    Ok(Stitched { points, branch_of, seams })
+    let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
+    let used: Vec<usize> =
+        seams.iter().zip(&synchronised.edges).map(|(seam, edge)| seam.fit_of(edge.used)).collect();
+    Ok(joined(graph, cover, maps, &seams, &used, &synchronised))
 }
 
-fn relative_frame(seam: &Seam) -> RelativeFrame {
-    let likelier = usize::from(seam.evidence < 0.0);
+/// Which regions lie mirrored, if `more(a, b)` is known besides of the evidence that regions `a` and `b` are of equal
+/// handedness.
+pub(crate) fn sides(
+    graph: &LinkGraph,
+    cover: &RegionCover,
+    maps: &[LocalMap],
+    more: impl Fn(u32, u32) -> f64,
+) -> Result<Vec<bool>, MapError> {
+    let mut seams = seams::find(graph, cover, maps);
+    seams.iter_mut().for_each(|seam| seam.evidence += more(seam.a, seam.b));
+    let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
+    Ok(synchronised.global_from_node.iter().map(|frame| frame.mirrored).collect())
+}
+
+/// The same as [`stitch`] where it is known which regions lie mirrored.
+pub(crate) fn stitch_by_sides(
+    graph: &LinkGraph,
+    cover: &RegionCover,
+    maps: &[LocalMap],
+    mirrored: &[bool],
+) -> Result<Stitched, MapError> {
+    let seams = seams::find(graph, cover, maps);
+    let used = |seam: &Seam| usize::from(mirrored[seam.a as usize] != mirrored[seam.b as usize]);
+    let used: Vec<usize> = seams.iter().map(used).collect();
+    let edges: Vec<RelativeFrame> =
+        seams.iter().zip(&used).map(|(seam, &used)| relative_frame(seam, used)).collect();
+    let synchronised = synchronise(maps.len(), &edges, RIGID)?;
+    Ok(joined(graph, cover, maps, &seams, &used, &synchronised))
+}
+
+fn joined(
+    graph: &LinkGraph,
+    cover: &RegionCover,
+    maps: &[LocalMap],
+    seams: &[Seam],
+    used: &[usize],
+    synchronised: &Synchronised,
+) -> Stitched {
+    let points = blend(graph.landmarks(), cover, maps, &synchronised.global_from_node);
+    let (branch_of, seams) = branches::find(cover, seams, used, &synchronised.edges);
+    Stitched { points, branch_of, seams }
+}
+
+/// The likelier fit of every seam first, and the other one as its alternative.
+fn open_edges(seams: &[Seam]) -> Vec<RelativeFrame> {
+    let edge = |seam: &Seam| {
+        let likelier = seam.fit_of(Estimate::Given);
+        RelativeFrame { alternative: Some(seam.a_from_b[1 - likelier]), ..relative_frame(seam, likelier) }
+    };
+    seams.iter().map(edge).collect()
+}
+
+/// The edge of a seam if its fit `used` is right, and there is no other.
+fn relative_frame(seam: &Seam, used: usize) -> RelativeFrame {
     RelativeFrame {
         a: seam.a,
         b: seam.b,
-        a_from_b: seam.a_from_b[likelier],
-        alternative: Some(seam.a_from_b[1 - likelier]),
+        a_from_b: seam.a_from_b[used],
+        alternative: None,
         evidence: seam.evidence.abs(),
-        weight: seam.shared as f64 / (seam.misfit[likelier].powi(2) + LEAST_MISFIT.powi(2)),
+        weight: seam.shared as f64 / (seam.misfit[used].powi(2) + LEAST_MISFIT.powi(2)),
     }
 }
 

@@ -12,7 +12,7 @@
 //! `E` the mean squared misfit over the `m` shared landmarks and cross links, `s0` the least error
 //! that local maps are believed to have.
 
-use covimap_embed::{Correspondence, Point, ProcrustesOptions, Reflection, Similarity, procrustes};
+use covimap_embed::{Correspondence, Estimate, Point, ProcrustesOptions, Reflection, Similarity, procrustes};
 use rayon::prelude::*;
 
 use crate::{LinkGraph, LocalMap, RegionCover};
@@ -37,6 +37,14 @@ pub(crate) struct Seam {
     pub shared: usize,
     /// Least over greatest spread of the shared landmarks: 0 on a line.
     pub condition: f64,
+}
+
+impl Seam {
+    /// Index into `a_from_b` of an estimate: the likelier fit is the given one.
+    pub fn fit_of(&self, estimate: Estimate) -> usize {
+        let likelier = usize::from(self.evidence < 0.0);
+        if estimate == Estimate::Alternative { 1 - likelier } else { likelier }
+    }
 }
 
 /// Place of a landmark in a region: `(region, index into its members)`.

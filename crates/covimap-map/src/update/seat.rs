@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use super::Joined;
 use super::draft::{Draft, NOWHERE};
 use super::fit::Fit;
-use crate::component::{begin, stitched};
+use crate::component::begin;
+use crate::layout::{Ground, Layout, lay_out};
 use crate::{MapError, Observer, RegionCover, Stage};
 
 /// Fewest landmarks of a chart whose frame is worth keeping.
@@ -127,7 +128,9 @@ fn solve(joined: &Joined, draft: &Draft, core: Vec<u32>, observer: &dyn Observer
     members.sort_unstable();
     members.dedup();
     let graph = joined.graph.restricted_to(&members);
-    let (cover, stitched) = stitched(&graph, &joined.params().auto, &Quiet(observer))?;
+    let params = &joined.params().auto;
+    let Layout { cover, stitched, .. } =
+        lay_out(&Ground { graph: &graph, distances: None, params, observer: &Quiet(observer) })?;
     Ok(Piece { core, members, points: stitched.points, cover })
 }
 

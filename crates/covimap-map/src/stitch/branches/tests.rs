@@ -29,7 +29,8 @@ fn cover(sizes: &[usize]) -> RegionCover {
 
 fn found(sizes: &[usize], seams: Vec<(Seam, EdgeReport)>) -> (Vec<u32>, SeamsReport) {
     let (seams, edges): (Vec<_>, Vec<_>) = seams.into_iter().unzip();
-    find(&cover(sizes), &seams, &edges)
+    let used: Vec<usize> = seams.iter().zip(&edges).map(|(seam, edge)| seam.fit_of(edge.used)).collect();
+    find(&cover(sizes), &seams, &used, &edges)
 }
 
 #[test]
