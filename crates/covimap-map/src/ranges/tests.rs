@@ -121,7 +121,7 @@ fn too_few_ranges_leave_the_map_as_it_is() {
     assert_eq!(few.landmarks(), bare.landmarks());
     assert!(few.alignment().is_empty() && few.report().components[0].ranges.is_none());
     // Landmarks at one place have no length to compare with.
-    let reading = |landmark| Reading { landmark, metres: 1.0 };
+    let reading = |landmark| (landmark, 1.0);
     let mut pile = vec![[1.0, 1.0]; 3];
     assert_eq!(fit_component(&[(0..3).map(reading).collect()], &mut pile), None);
     assert_eq!(pile, [[1.0, 1.0]; 3]);
