@@ -116,7 +116,7 @@ fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<R
         sweep.fit_noise();
     }
     for _ in 0..ROUNDS {
-        sweep.place_steps();
+        sweep.place_across();
         sweep.move_landmarks();
         sweep.place_steps();
         sweep.fit_noise();
@@ -125,7 +125,8 @@ fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<R
         .map(|place| (sweep.look(place).1, place))
         .map(|(miss, place)| (miss, sweep.variance(place, miss)))
         .collect();
-    let outliers = misses.iter().filter(|(miss, variance)| miss * miss > OUTLIER * OUTLIER * variance).count();
+    let outliers =
+        misses.iter().filter(|(miss, variance)| miss * miss > OUTLIER * OUTLIER * variance).count();
     let report = RangeReport {
         ranges: misses.len() as u64,
         steps: steps.len() as u64,

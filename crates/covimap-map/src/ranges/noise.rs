@@ -59,3 +59,37 @@ impl Noise {
         self.fixed + self.growing * length * length
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Misses of the two signs in turn, of the size that has this standard deviation as its normal one.
+    fn looks(deviation: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let one = |k: u32| {
+            let length = 0.1 + f64::from(k) / 1000.0;
+            (length, if k % 2 == 0 { 1.0 } else { -1.0 } * deviation(length) / NORMAL)
+        };
+        (0..800).map(one).collect()
+    }
+
+    #[test]
+    fn noise_that_grows_and_noise_that_does_not_are_told_apart() {
+        let fixed = Noise::fit(looks(|_| 0.05), 1e-12);
+        assert!((fixed.variance(0.1) - 0.0025).abs() < 1e-6 && (fixed.variance(0.9) - 0.0025).abs() < 1e-6);
+        let growing = Noise::fit(looks(|length| 0.1 * length), 1e-12);
+        assert!((growing.growing - 0.01).abs() < 1e-3 && growing.fixed < 1e-4, "{growing:?}");
+        let both = Noise::fit(looks(|length| (0.0025 + 0.01 * length * length).sqrt()), 1e-12);
+        assert!((both.growing - 0.01).abs() < 1e-3 && (both.fixed - 0.0025).abs() < 3e-4, "{both:?}");
+        // Noise that falls with the length is taken for one that does not change.
+        let falling = Noise::fit(looks(|length| 0.1 - 0.05 * length), 1e-12);
+        assert!(falling.growing == 0.0 && falling.fixed > 0.0, "{falling:?}");
+    }
+
+    #[test]
+    fn misses_of_nothing_have_the_least_variance() {
+        for looks in [vec![(0.5, 0.0); 20], vec![(0.5, 0.0)], Vec::new()] {
+            assert_eq!(Noise::fit(looks, 1e-8).variance(1.0), 1e-8);
+        }
+    }
+}

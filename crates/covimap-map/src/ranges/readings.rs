@@ -23,7 +23,8 @@ pub(super) struct Readings {
 impl Readings {
     /// From the landmark and the metres of every range, one list a step.
     pub fn new(steps: &[Vec<(u32, f64)>], landmarks: usize) -> Self {
-        let mut readings = Self { starts: vec![0], landmark_starts: vec![0; landmarks + 1], ..Self::default() };
+        let mut readings =
+            Self { starts: vec![0], landmark_starts: vec![0; landmarks + 1], ..Self::default() };
         for (step, ranges) in (0..).zip(steps) {
             let reading = |&(landmark, metres)| Reading { landmark, step, metres };
             readings.all.extend(ranges.iter().map(reading));

@@ -93,11 +93,7 @@ impl<'a> Reduced<'a> {
 
     /// For what each range and each edge asks for along its direction: what the landmarks are to do, less what the places
     /// do themselves.
-    fn gather(
-        &self,
-        range: impl Fn(usize) -> f64 + Sync,
-        edge: impl Fn(usize) -> f64,
-    ) -> Vec<Point> {
+    fn gather(&self, range: impl Fn(usize) -> f64 + Sync, edge: impl Fn(usize) -> f64) -> Vec<Point> {
         let sweep = self.sweep;
         let place_moves = |step: usize| {
             let mut normal = Normal::default();
@@ -130,7 +126,10 @@ impl<'a> Reduced<'a> {
         let sweep = self.sweep;
         let block = |i: usize| {
             let mut normal = Normal::default();
-            sweep.readings.of_landmark(i).for_each(|place| normal.add(sweep.look(place).0, 0.0, sweep.weights[place]));
+            sweep
+                .readings
+                .of_landmark(i)
+                .for_each(|place| normal.add(sweep.look(place).0, 0.0, sweep.weights[place]));
             normal
         };
         let mut normals: Vec<Normal> = (0..sweep.points.len()).into_par_iter().map(block).collect();

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::noise::Noise;
 use super::normal::{Normal, add, length, sub, times};
-use super::readings::Readings;
+use super::readings::{Reading, Readings};
 use super::reduced::Reduced;
 
 /// Gauss-Newton steps of a place in one round.
@@ -16,9 +16,9 @@ const RIDGE: f64 = 0.01;
 const HELD: f64 = 0.1;
 /// Weights fall from this many standard deviations on.
 const FAR: f64 = 3.0;
-/// A standard deviation is at least this share of the median range: what is exact to the last digit still needs a
+/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the last digit still needs a
 /// width.
-const LEAST: f64 = 1e-9;
+const LEAST: f64 = 1e-3;
 
 /// Neighbours on the map, and how far it has them apart.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +39,8 @@ pub(super) struct Sweep<'a> {
     pub noise: Noise,
     /// Metres a map unit.
     pub scale: f64,
-    least: f64,
+    /// Of all ranges.
+    median: f64,
 }
 
 impl<'a> Sweep<'a> {
@@ -53,15 +54,15 @@ impl<'a> Sweep<'a> {
         };
         let places: Vec<Point> = (0..readings.steps()).map(middle).collect();
         let mut ranges: Vec<f64> = readings.all().iter().map(|reading| reading.metres).collect();
-        let away = readings.all().iter().map(|reading| {
-            length(sub(points[reading.landmark as usize], places[reading.step as usize]))
-        });
+        let away = readings
+            .all()
+            .iter()
+            .map(|reading| length(sub(points[reading.landmark as usize], places[reading.step as usize])));
         let (range, away) = (median(&mut ranges)?, median(&mut away.collect::<Vec<_>>())?);
         let edge = |&(a, b): &(u32, u32)| {
             let length = length(sub(points[b as usize], points[a as usize]));
             (length > 0.0).then(|| Edge { ends: [a, b], length, weight: (HELD * length).powi(-2) })
         };
-        let least = (LEAST * range).powi(2);
         (away > 0.0).then(|| {
             let mut sweep = Self {
                 readings,
@@ -71,7 +72,7 @@ impl<'a> Sweep<'a> {
                 weights: vec![1.0; readings.all().len()],
                 noise: Noise { fixed: range * range, growing: 0.0 },
                 scale: 1.0,
-                least,
+                median: range,
             };
             sweep.enlarge(range / away);
             sweep
@@ -105,28 +106,73 @@ impl<'a> Sweep<'a> {
         (FAR * FAR / (FAR * FAR + miss * miss / variance)).powi(2) / variance
     }
 
-    /// Of a range that misses by so much: by the length that the map has for it.
+    /// Of a range that misses by so much: by the length that the map has for it. Those of near landmarks count as
+    /// no more exact than at half the median: no place is known as well as that.
     pub fn variance(&self, place: usize, miss: f64) -> f64 {
-        self.noise.variance(self.readings.all()[place].metres - miss)
+        self.noise.variance((self.readings.all()[place].metres - miss).max(0.5 * self.median))
     }
 
     /// Every place to where the ranges of its step fit best, and the weights of the ranges there.
     pub fn place_steps(&mut self) {
-        let best = |(step, &start): (usize, &Point)| {
-            let mut from = start;
-            for _ in 0..STEPS {
-                let mut normal = Normal::default();
-                for place in self.readings.of_step(step) {
-                    let (toward, miss) = self.look_from(from, place);
-                    normal.add(toward, -miss, self.weight(place, miss));
-                }
-                from = add(from, times(normal.inverse(RIDGE), normal.side));
+        self.place_from(|_, _, start| start);
+    }
+
+    /// The same from the other side of the landmarks of the step, where that fits better: ranges to landmarks on a
+    /// line fit on both sides.
+    pub fn place_across(&mut self) {
+        self.place_from(|now, step, start| {
+            let across = now.settled(step, now.mirrored(step, start));
+            if now.cost(step, across) < now.cost(step, start) { across } else { start }
+        });
+    }
+
+    fn place_from(&mut self, first: impl Fn(&Self, usize, Point) -> Point + Sync) {
+        let best = |(step, &start): (usize, &Point)| self.settled(step, first(self, step, start));
+        self.places = self.places.par_iter().enumerate().map(best).collect();
+        self.weights = (0..self.weights.len())
+            .into_par_iter()
+            .map(|place| self.weight(place, self.look(place).1))
+            .collect();
+    }
+
+    /// Where some Gauss-Newton steps lead.
+    fn settled(&self, step: usize, mut from: Point) -> Point {
+        for _ in 0..STEPS {
+            let mut normal = Normal::default();
+            for place in self.readings.of_step(step) {
+                let (toward, miss) = self.look_from(from, place);
+                normal.add(toward, -miss, self.weight(place, miss));
             }
-            from
+            from = add(from, times(normal.inverse(RIDGE), normal.side));
+        }
+        from
+    }
+
+    /// The place on the other side of the line that best goes along the landmarks of a step.
+    fn mirrored(&self, step: usize, from: Point) -> Point {
+        let own = &self.readings.all()[self.readings.of_step(step)];
+        let at = |reading: &Reading| self.points[reading.landmark as usize];
+        let middle =
+            own.iter().fold([0.0; 2], |sum, reading| add(sum, at(reading))).map(|c| c / own.len() as f64);
+        let (mut even, mut odd) = (0.0, 0.0);
+        for reading in own {
+            let [x, y] = sub(at(reading), middle);
+            (even, odd) = (even + x * x - y * y, odd + 2.0 * x * y);
+        }
+        // The line goes along half the angle of (even, odd); a mirror doubles it again.
+        let size = length([even, odd]).max(f64::MIN_POSITIVE);
+        let ([c, s], [x, y]) = ([even / size, odd / size], sub(from, middle));
+        add(middle, [c * x + s * y, s * x - c * y])
+    }
+
+    /// What the ranges of a step cost from a place: `sum c^2 (e^2 / v) / (c^2 + e^2 / v)`, of which the weights are the slope.
+    fn cost(&self, step: usize, from: Point) -> f64 {
+        let cost = |place: usize| {
+            let miss = self.look_from(from, place).1;
+            let square = miss * miss / self.variance(place, miss);
+            FAR * FAR * square / (FAR * FAR + square)
         };
-        self.places = self.places.par_iter().enumerate().map(|(step, start)| best((step, start))).collect();
-        self.weights =
-            (0..self.weights.len()).into_par_iter().map(|place| self.weight(place, self.look(place).1)).collect();
+        self.readings.of_step(step).map(cost).sum()
     }
 
     /// Eq. (1).
@@ -154,13 +200,13 @@ impl<'a> Sweep<'a> {
     /// The noise that the misses tell, each made larger by what its own place took away from it.
     pub fn fit_noise(&mut self) {
         let reduced = Reduced::new(self);
-        let look = |(place, reading): (usize, &super::readings::Reading)| {
+        let look = |(place, reading): (usize, &Reading)| {
             let miss = self.look(place).1;
             let free = 1.0 - reduced.leverage(place);
             (free > 0.1).then(|| (reading.metres - miss, miss / free.sqrt()))
         };
         let looks: Vec<(f64, f64)> = self.readings.all().par_iter().enumerate().filter_map(look).collect();
-        self.noise = Noise::fit(looks, self.least);
+        self.noise = Noise::fit(looks, (LEAST * self.median).powi(2));
     }
 
     /// Every landmark to where ranges and map fit best.
@@ -171,7 +217,7 @@ impl<'a> Sweep<'a> {
 
     /// Standard error of the scale, metres a map unit: `s / sqrt(sum w d^2)`.
     pub fn scale_error(&self) -> f64 {
-        let away = |(place, reading): (usize, &super::readings::Reading)| {
+        let away = |(place, reading): (usize, &Reading)| {
             self.weights[place] * (reading.metres - self.look(place).1).powi(2)
         };
         self.scale / self.readings.all().iter().enumerate().map(away).sum::<f64>().sqrt()
