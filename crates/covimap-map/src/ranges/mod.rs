@@ -1,18 +1,21 @@
 //! Ranges: where the log tells how far landmarks were, the map becomes metric, and more exact.
 //!
 //! A range `r` of landmark i in step t is `s |x_i - y_t|` but for noise, with a scale `s` of the whole component, metres
-//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is the map that the
-//! sightings made, and the mean of what the step shows. Then, in turn,
+//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is
+//! the map that the sightings made, and the mean of what the step shows. Then, in turn,
 //!
 //! - every place moves to where the ranges of its step fit best (Gauss and Newton);
-//! - the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
-//! - every landmark moves to where the ranges to it fit best, held by the map as by a spring.
+//! - on the map as it is, the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
+//! - after that all landmarks move at once to where the ranges fit best, neighbours being held at their distance
+//!   by the map: see `reduced`;
+//! - the variance of a range, `v = a + b d^2`, is fitted to what the ranges miss.
 //!
-//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2))^2` (Geman and McClure), `c` being three standard
-//! deviations of all that are not outliers: one that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2 / v))^2 / v` (Geman and McClure), `c` being 3: one
+//! that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//! `docs/maths/ranges.md` has reasons and figures.
 //!
 //! # Complexity
-//! `O(m)` a round for `m` ranges.
+//! `O(m)` a product with the matrix for `m` ranges, at most 60 of them a round; some 40 bytes a range.
 
 mod noise;
 mod normal;
