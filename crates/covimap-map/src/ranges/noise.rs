@@ -68,7 +68,7 @@ mod tests {
     fn looks(deviation: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let one = |k: u32| {
             let length = 0.1 + f64::from(k) / 1000.0;
-            (length, if k % 2 == 0 { 1.0 } else { -1.0 } * deviation(length) / NORMAL)
+            (length, if k.is_multiple_of(2) { 1.0 } else { -1.0 } * deviation(length) / NORMAL)
         };
         (0..800).map(one).collect()
     }
