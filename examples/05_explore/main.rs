@@ -1,4 +1,4 @@
-//! A robot that explores by its own map, against one that wanders, at equal steps.
+//! A robot that explores by what it has seen, against one that wanders, at equal steps.
 //!
 //! `cargo run --release --example 05_explore -- [WORLD LANDMARKS SEEDS]`; the worlds are those of `covimap simulate`, and
 //! `room`, the room of the paper.
@@ -11,9 +11,9 @@ mod closed_loop;
 use std::error::Error;
 
 use closed_loop::{explored, map_of};
+use covimap::Truth;
 use covimap::evaluate::{self, EvaluateParams};
 use covimap::plan::{ExploreParams, MapIndex, forecast};
-use covimap::{MapperParams, Truth};
 use covimap_sim::{Floor, Motion, SimSpec, Simulation, World};
 
 /// Steps after which the robots are compared.
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let text = |k: usize, default: &str| args.get(k).map_or(default, String::as_str).to_owned();
     let (world, landmarks, seeds) =
-        (text(0, "office"), text(1, "100").parse()?, text(2, "2").parse::<u64>()?);
+        (text(0, "office"), text(1, "400").parse()?, text(2, "2").parse::<u64>()?);
     let mut spec = match world.as_str() {
         "room" => SimSpec::paper_room(landmarks, 1.5, 1000),
         floor => SimSpec::large(floor.parse::<Floor>()?, landmarks, 40),
@@ -103,7 +103,7 @@ struct Errors {
 impl Errors {
     fn of(log: &[Vec<u32>], ids: &[&str], truth: &Truth) -> Self {
         let guessed = Self { seen: 0.0, triangles: 0.5, near: 0.5, edges: 1.0, told: 0.5 };
-        let Some(map) = map_of(log, ids, MapperParams::default()) else { return guessed };
+        let Some(map) = map_of(log, ids) else { return guessed };
         let Ok(found) = evaluate::against(&map, truth, &EvaluateParams::default()) else { return guessed };
         let count = |n: usize| (n * n.saturating_sub(1) * n.saturating_sub(2)) as f64;
         let known = count(found.n) / count(ids.len());

@@ -3,7 +3,7 @@
 //! - [`next_best`] ranks places of a finished map: where more looks would gain most, and why.
 //! - [`forecast`] tells how good the map is by its own account, and how many steps would make it as good as is
 //!   wanted: the stop rule.
-//! - [`Explorer`] steers a robot from look to look towards where it has been least.
+//! - [`Explorer`] steers a robot from look to look to where there is something new to see; it needs no map.
 //!
 //! # What a visit gains
 //! A position of variance `s_k^2` that rests on `n_k` sightings has the variance `s_k^2 n_k / (n_k + m_k)` after `m_k`

@@ -191,96 +191,58 @@ fn settings_out_of_their_range_are_refused() {
     }
 }
 
-/// A row of landmarks a range apart, each seen so often, with lines of sight from each to the next.
-fn row(sightings: &[u32]) -> Arc<MapIndex> {
-    let placed: Vec<_> = (0..sightings.len()).map(|k| ([0.5 * k as f64, 0.0], 0)).collect();
-    let lines: Vec<_> = (1..sightings.len() as u32).map(|k| (k - 1, k, 1)).collect();
-    let map = changed(&map_of(&placed, &lines), |k, placed| placed.sightings = sightings[k], vec![]);
-    Arc::new(sensed(map, 1))
+/// What the explorer says to looks at the landmarks of these one-letter IDs.
+fn walk(explorer: &mut Explorer, looks: &[&str]) -> Vec<Option<String>> {
+    let ids = |look: &&str| look.chars().map(String::from).collect::<Vec<_>>();
+    let said = |look: &&str| explorer.next(ids(look).iter().map(String::as_str)).map(str::to_owned);
+    looks.iter().map(said).collect()
 }
 
-/// What the explorer says to looks, by ID.
-fn walk(explorer: &mut Explorer, index: &MapIndex, looks: &[&[&str]]) -> Vec<Option<String>> {
-    let mut next = |look: &&[&str]| explorer.next(look.iter().copied()).map(|id| index.name(id).to_owned());
-    looks.iter().map(&mut next).collect()
-}
-
-#[test]
-fn the_explorer_is_sent_over_lines_of_sight_to_what_was_seen_little() {
-    let index = row(&[20, 20, 20, 20, 20, 5]);
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    // It sees the way as far as L1, then farther and farther; the goal ends the errand with the fifth look at it.
-    let looks: [&[&str]; 9] = [
-        &["L0", "L1"],
-        &["L1", "L2"],
-        &["L2", "L4", "new"],
-        &["L4", "L5"],
-        &["L5"],
-        &["L5", "L4"],
-        &["L5"],
-        &["L5"],
-        &["L4"],
-    ];
-    let said = walk(&mut explorer, &index, &looks);
-    let wanted = ["L1", "L2", "L4", "L5", "L5", "L5", "L5"].map(|id| Some(id.to_owned()));
-    assert_eq!(said[..7], wanted);
-    assert_eq!(said[7..], [None, None]);
+/// Looks that show nothing.
+fn dark(explorer: &mut Explorer, looks: usize) {
+    (0..looks).for_each(|_| assert_eq!(explorer.next([]), None));
 }
 
 #[test]
-fn without_need_or_sight_the_explorer_wanders() {
-    // Five of twenty are few, six are not.
-    for (fewest, sent) in [(5, true), (6, false)] {
-        let index = row(&[20, 20, 20, fewest]);
-        let said = walk(&mut Explorer::new(Arc::clone(&index)).unwrap(), &index, &[&["L0"]]);
-        assert_eq!(said[0].is_some(), sent, "{fewest}");
+fn the_explorer_heads_for_what_came_into_sight_last() {
+    let said = walk(&mut Explorer::default(), &["a", "ab", "abc", "abc", "c", "abc", ""]);
+    // From its fourth look on a landmark is no news: a and b had three by the fourth look, c by the fifth.
+    let wanted = ["a", "b", "c", "c", "c"].map(|id| Some(id.to_owned()));
+    assert_eq!((&said[..5], &said[5..]), (&wanted[..], &[None, None][..]));
+}
+
+#[test]
+fn of_landmarks_that_came_together_the_less_seen_goes_first_then_the_first_by_id() {
+    let said = walk(&mut Explorer::default(), &["ba", "a", "ab", "ba", "ab"]);
+    // Second look at a alone, so that b has been seen less: 1, 2 and 3 times when it is chosen.
+    let wanted = ["a", "a", "b", "b"].map(|id| Some(id.to_owned()));
+    assert_eq!((&said[..4], &said[4..]), (&wanted[..], &[None][..]));
+}
+
+#[test]
+fn what_was_not_seen_for_a_hundred_looks_and_half_of_all_is_news_again() {
+    // Four looks, then so many without: the next is look 5 + dark, and l = 4, so that t - l = 1 + dark.
+    for (without, is_news) in [(98, false), (99, true)] {
+        let mut explorer = Explorer::default();
+        assert_eq!(walk(&mut explorer, &["a"; 4])[3], None);
+        dark(&mut explorer, without);
+        assert_eq!(walk(&mut explorer, &["a"])[0].is_some(), is_news, "{without}");
     }
-    // Too early: the median landmark was seen in seven steps.
-    let index = row(&[7, 7, 7, 1]);
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    assert_eq!(walk(&mut explorer, &index, &[&["L0"], &[]]), [None, None]);
-    // One more look at two of the four makes the median eight.
-    assert_eq!(walk(&mut explorer, &index, &[&["L1", "L2"]]), [Some("L2".to_owned())]);
+    // After 304 looks with the last sight of a in look 204, t - l is 101 at t = 305: less than half.
+    let mut explorer = Explorer::default();
+    walk(&mut explorer, &["a"; 204]);
+    dark(&mut explorer, 100);
+    assert_eq!(walk(&mut explorer, &["a"]), [None]);
+    // l = 305: at t = 609 it is 304, just less than half; the look makes l = 609, and 609 looks later t - l is half of t.
+    dark(&mut explorer, 303);
+    assert_eq!(walk(&mut explorer, &["a"]), [None]);
+    dark(&mut explorer, 608);
+    let said = walk(&mut explorer, &["a"; 4]);
+    assert_eq!(said.iter().map(Option::is_some).collect::<Vec<_>>(), [true, true, true, false]);
 }
 
 #[test]
-fn news_put_errands_off() {
-    let index = row(&[20, 20, 20, 1]);
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    assert_eq!(walk(&mut explorer, &index, &[&["L0", "new"]]), [None]);
-    let said = walk(&mut explorer, &index, &[&["L0"] as &[&str]; 30]);
-    assert!(said[..28].iter().all(Option::is_none) && said[29].is_some(), "{said:?}");
-}
-
-#[test]
-fn an_errand_is_given_up_when_it_leads_nowhere() {
-    let index = row(&[20, 20, 20, 20, 20, 1]);
-    // Out of sight of the way.
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    let said = walk(&mut explorer, &index, &[&["L3"], &[], &["L3"]]);
-    assert_eq!(said, [Some("L3".to_owned()), None, None]);
-    // Stuck: the way from L3 to L5 is two ranges long, 12 + 2 * 7 looks; then ten looks of rest.
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    let said = walk(&mut explorer, &index, &[&["L3"] as &[&str]; 60]);
-    let turns: Vec<bool> = said.iter().map(Option::is_some).collect();
-    assert_eq!(turns[..26], [true; 26]);
-    assert_eq!(turns[26..36], [false; 10]);
-    assert!(turns[36]);
-}
-
-#[test]
-fn an_errand_outlives_a_new_map_that_has_its_way() {
-    let index = row(&[20, 20, 20, 20, 1]);
-    let mut explorer = Explorer::new(Arc::clone(&index)).unwrap();
-    assert_eq!(walk(&mut explorer, &index, &[&["L0"]]), [Some("L0".to_owned())]);
-    // By the newer map there is no need any more, but one does not turn back half-way.
-    let newer = row(&[20, 20, 20, 20, 20]);
-    explorer.adopt(Arc::clone(&newer)).unwrap();
-    assert_eq!(walk(&mut explorer, &newer, &[&["L1", "L2"]]), [Some("L2".to_owned())]);
-    // A map without the goal ends it; one without a sensor is refused.
-    explorer.adopt(row(&[20, 20, 20])).unwrap();
-    assert_eq!(walk(&mut explorer, &newer, &[&["L1", "L2"]]), [None]);
-    let refusal = explorer.adopt(Arc::new(index_of(&[[0.0; 2]], &[]))).unwrap_err();
-    assert!(matches!(refusal, PlanError::NoSensor { landmarks: 1 }));
-    assert!(Explorer::new(Arc::new(index_of(&[], &[]))).is_err());
+fn an_id_that_is_given_twice_counts_once() {
+    let said = walk(&mut Explorer::default(), &["aa", "aaa", "aa", "aa"]);
+    assert_eq!(said.iter().map(Option::is_some).collect::<Vec<_>>(), [true, true, true, false]);
 }
