@@ -27,25 +27,30 @@ const RIDGE: f64 = 1e-6;
 /// The equations at the present state of a sweep.
 pub(super) struct Reduced<'a> {
     sweep: &'a Sweep<'a>,
+    /// From place to landmark, for every range.
+    toward: Vec<Point>,
     /// `A^-1` of every step.
     inverses: Vec<[f64; 3]>,
 }
 
 impl<'a> Reduced<'a> {
     pub fn new(sweep: &'a Sweep<'a>) -> Self {
+        let toward: Vec<Point> =
+            (0..sweep.weights.len()).into_par_iter().map(|place| sweep.look(place).0).collect();
         let inverse = |step: usize| {
             let mut normal = Normal::default();
             for place in sweep.readings.of_step(step) {
-                normal.add(sweep.look(place).0, 0.0, sweep.weights[place]);
+                normal.add(toward[place], 0.0, sweep.weights[place]);
             }
             normal.inverse(RIDGE)
         };
-        Self { sweep, inverses: (0..sweep.readings.steps()).into_par_iter().map(inverse).collect() }
+        let inverses = (0..sweep.readings.steps()).into_par_iter().map(inverse).collect();
+        Self { sweep, toward, inverses }
     }
 
     /// The share of its own that a range has in the place of its step.
     pub fn leverage(&self, place: usize) -> f64 {
-        let toward = self.sweep.look(place).0;
+        let toward = self.toward[place];
         let step = self.sweep.readings.all()[place].step as usize;
         self.sweep.weights[place] * dot(toward, times(self.inverses[step], toward))
     }
@@ -82,7 +87,7 @@ impl<'a> Reduced<'a> {
     fn times(&self, moves: &[Point]) -> Vec<Point> {
         let along = |place: usize| {
             let landmark = self.sweep.readings.all()[place].landmark as usize;
-            dot(self.sweep.look(place).0, moves[landmark])
+            dot(self.toward[place], moves[landmark])
         };
         let stretch = |edge: usize| {
             let [a, b] = self.sweep.edges[edge].ends;
@@ -98,7 +103,7 @@ impl<'a> Reduced<'a> {
         let place_moves = |step: usize| {
             let mut normal = Normal::default();
             for place in sweep.readings.of_step(step) {
-                normal.add(sweep.look(place).0, range(place), sweep.weights[place]);
+                normal.add(self.toward[place], range(place), sweep.weights[place]);
             }
             times(self.inverses[step], normal.side)
         };
@@ -106,7 +111,7 @@ impl<'a> Reduced<'a> {
         let landmark = |i: usize| {
             let mut normal = Normal::default();
             for place in sweep.readings.of_landmark(i) {
-                let toward = sweep.look(place).0;
+                let toward = self.toward[place];
                 let by_place = dot(toward, own[sweep.readings.all()[place].step as usize]);
                 normal.add(toward, range(place) - by_place, sweep.weights[place]);
             }
@@ -129,7 +134,7 @@ impl<'a> Reduced<'a> {
             sweep
                 .readings
                 .of_landmark(i)
-                .for_each(|place| normal.add(sweep.look(place).0, 0.0, sweep.weights[place]));
+                .for_each(|place| normal.add(self.toward[place], 0.0, sweep.weights[place]));
             normal
         };
         let mut normals: Vec<Normal> = (0..sweep.points.len()).into_par_iter().map(block).collect();
