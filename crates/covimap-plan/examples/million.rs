@@ -52,7 +52,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let ids: Vec<LandmarkId> = (0..100_000).map(|_| LandmarkId(random.random_range(0..n))).collect();
     timed("10 nearest", ids.len(), || ids.iter().try_for_each(|&id| index.nearest(id, 10).map(drop)))?;
-    let triples: Vec<_> = ids.windows(3).map(|t| [t[0], t[1], t[2]]).collect();
+    let distinct = |t: &&[LandmarkId]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    let triples: Vec<_> = ids.windows(3).filter(distinct).map(|t| [t[0], t[1], t[2]]).collect();
     timed("orientation", triples.len(), || {
         triples.iter().try_for_each(|&[a, b, c]| index.orientation(a, b, c).map(drop))
     })?;
@@ -71,13 +72,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         params.objective = objective;
         let roads = timed("road map", 1, || Roads::new(&index, params))?;
         let pairs = ids[..200].as_chunks::<2>().0;
-        let lengths = timed(&format!("{objective:?} route"), pairs.len(), || {
-            pairs
-                .iter()
-                .map(|&[a, b]| roads.route(a, b).map(|route| route.landmarks.len()))
-                .collect::<Result<Vec<_>, _>>()
-        })?;
-        println!("  over {} landmarks in the mean", lengths.iter().sum::<usize>() / lengths.len());
+        let ways =
+            |roads: &Roads<'_>| pairs.iter().map(|&[a, b]| roads.route(a, b)).collect::<Result<Vec<_>, _>>();
+        let found = timed(&format!("{objective:?} route"), pairs.len(), || ways(&roads))?;
+        let length: usize = found.iter().map(|route| route.landmarks.len()).sum();
+        println!("  over {} landmarks in the mean", length / found.len());
+        let before = resident_megabytes();
+        let roads = timed("roads prepared", 1, || roads.prepare());
+        println!("  {:.0} MB", resident_megabytes() - before);
+        let again = timed(&format!("{objective:?} route, prepared"), pairs.len(), || ways(&roads))?;
+        assert!(found.iter().zip(&again).all(|(a, b)| (a.cost - b.cost).abs() < 1e-9 * a.cost));
     }
     Ok(())
 }
@@ -147,4 +151,11 @@ fn processor_seconds() -> f64 {
     let after_name = text.rsplit(')').next().unwrap_or_default();
     let ticks = after_name.split_whitespace().skip(11).take(2).filter_map(|field| field.parse::<f64>().ok());
     ticks.sum::<f64>() / 100.0
+}
+
+/// Memory of this process, as Linux tells it.
+fn resident_megabytes() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+    let pages = text.split_whitespace().nth(1).and_then(|field| field.parse::<f64>().ok());
+    pages.unwrap_or_default() * 4096.0 / 1e6
 }

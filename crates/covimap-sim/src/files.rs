@@ -76,7 +76,8 @@ fn write_log(
     let mut writer = JsonlWriter::new(out);
     let mut steps = 0;
     while let Some(step) = simulation.next_step() {
-        writer.step(None, step.seen.iter().map(|&number| names.name(LandmarkId(number))))?;
+        let seen = || step.seen.iter().map(|&number| names.name(LandmarkId(number)));
+        writer.step_with_ranges(None, seen(), seen().zip(step.ranges.iter().copied()))?;
         steps += 1;
         if steps % REPORT_EVERY == 0 && !go_on() {
             break;

@@ -9,6 +9,8 @@ pub struct Step<'s> {
     pub pose: Pose,
     /// Numbers of the landmarks seen, ascending, each once.
     pub seen: &'s [u32],
+    /// Measured distances to them, metres, in their order; empty unless the sensor measures ranges.
+    pub ranges: &'s [f64],
 }
 
 /// All observations of a run, in order.
@@ -16,6 +18,8 @@ pub struct Step<'s> {
 pub struct Recording {
     poses: Vec<Pose>,
     seen: Vec<u32>,
+    /// Of every sighting, or of none.
+    ranges: Vec<f64>,
     /// Where the list of each step ends in `seen`.
     ends: Vec<usize>,
 }
@@ -25,6 +29,7 @@ impl Recording {
     pub fn push(&mut self, step: Step<'_>) {
         self.poses.push(step.pose);
         self.seen.extend_from_slice(step.seen);
+        self.ranges.extend_from_slice(step.ranges);
         self.ends.push(self.seen.len());
     }
 
@@ -47,7 +52,9 @@ impl Recording {
     #[must_use]
     pub fn step(&self, number: usize) -> Step<'_> {
         let start = if number == 0 { 0 } else { self.ends[number - 1] };
-        Step { pose: self.poses[number], seen: &self.seen[start..self.ends[number]] }
+        let sightings = start..self.ends[number];
+        let ranges = self.ranges.get(sightings.clone()).unwrap_or_default();
+        Step { pose: self.poses[number], seen: &self.seen[sightings], ranges }
     }
 
     /// All observations in order; `.take(n)` is the log as it was after `n` steps.

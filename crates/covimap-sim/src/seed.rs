@@ -21,6 +21,8 @@ pub(crate) enum Stream {
     Sensing = 4,
     /// Recognition errors.
     Errors = 5,
+    /// Noise of ranges.
+    Ranges = 6,
 }
 
 /// The generator for one purpose under one seed.

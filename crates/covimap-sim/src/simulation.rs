@@ -28,6 +28,7 @@ pub struct Simulation<'w> {
     journey: Journey<'w>,
     observer: Observer,
     seen: Vec<u32>,
+    ranges: Vec<f64>,
     tally: Tally,
     left: u64,
 }
@@ -48,6 +49,7 @@ impl<'w> Simulation<'w> {
             journey: Journey::new(world, spec, seed)?,
             observer: Observer::new(world, &spec.sensor, spec.errors, seed)?,
             seen: Vec::new(),
+            ranges: Vec::new(),
             tally: Tally::new(world.landmarks().len()),
             left: spec.steps,
         })
@@ -58,8 +60,10 @@ impl<'w> Simulation<'w> {
         self.left = self.left.checked_sub(1)?;
         let pose = self.journey.next();
         self.observer.observe(pose, &mut self.seen);
+        self.ranges.clear();
+        self.ranges.extend(self.observer.ranges());
         self.tally.add(&self.seen);
-        Some(Step { pose, seen: &self.seen })
+        Some(Step { pose, seen: &self.seen, ranges: &self.ranges })
     }
 
     /// Runs to the end and keeps everything in memory.

@@ -120,6 +120,7 @@ fn every_option_changes_what_comes_out() {
                 "--detectability=0.2,1",
                 "--missed=0.3",
                 "--mistaken=0.3",
+                "--range-noise=0.1",
             ],
         ),
         (room, &["--side=2", "--density=4", "--threshold=4,8", "--steepness=50", "--recognition=range"]),
@@ -193,4 +194,15 @@ fn a_place_that_takes_no_file_leaves_neither() {
     assert_eq!(fs::read_dir(scratch.path().join("out")).unwrap().count(), 1);
     scratch.file("file", "");
     scratch.refuses(&["simulate", "hall", "-o", "file"], 1, "a file stands where a folder is wanted");
+}
+
+#[test]
+fn ranges_make_a_map_in_metres() {
+    let scratch = Scratch::new();
+    scratch.succeeds(&hall(&["--range-noise", "0.02"]));
+    assert!(scratch.read("out/observations.jsonl").contains("\"ranges\": {"));
+    scratch.succeeds(&["build", "out/observations.jsonl", "-o", "map.json", "-q"]);
+    let report = &scratch.succeeds(&["info", "map.json", "--json"]).json();
+    assert!(report.to_string().contains("scale_error"), "{report}");
+    scratch.refuses(&hall(&["--range-noise=-1"]), USAGE, "covimap: range noise is -1; it must be at least 0");
 }

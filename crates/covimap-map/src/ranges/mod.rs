@@ -1,31 +1,40 @@
 //! Ranges: where the log tells how far landmarks were, the map becomes metric, and more exact.
 //!
 //! A range `r` of landmark i in step t is `s |x_i - y_t|` but for noise, with a scale `s` of the whole component, metres
-//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is the map that the
-//! sightings made, and the mean of what the step shows. Then, in turn,
+//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is
+//! the map that the sightings made, and the mean of what the step shows. Then, in turn,
 //!
 //! - every place moves to where the ranges of its step fit best (Gauss and Newton);
-//! - the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
-//! - every landmark moves to where the ranges to it fit best, held by the map as by a spring.
+//! - on the map as it is, the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
+//! - after that all landmarks move at once to where the ranges fit best, neighbours being held at their distance
+//!   by the map: see `reduced`;
+//! - the variance of a range, `v = a + b d^2`, is fitted to what the ranges miss.
 //!
-//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2))^2` (Geman and McClure), `c` being three standard
-//! deviations of all that are not outliers: one that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2 / v))^2 / v` (Geman and McClure), `c` being 3: one
+//! that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//! `docs/maths/ranges.md` has reasons and figures.
 //!
 //! # Complexity
-//! `O(m)` a round for `m` ranges.
+//! `O(m)` a product with the matrix for `m` ranges, at most 60 of them a round; some 40 bytes a range.
 
+mod noise;
+mod normal;
+mod readings;
+mod reduced;
 mod sweep;
 
 use covimap_embed::Point;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::component::put_in_frame;
-use crate::{ChartFit, GlobalMap, MapError, PlacedLandmark, Range, SightingLog};
-use sweep::{Reading, Sweep};
+use crate::{ChartFit, GlobalMap, MapError, PlacedLandmark, Range, SightingLog, delaunay_edges};
+use readings::Readings;
+use sweep::Sweep;
 
-/// Rounds of places, scale and landmarks.
-const ROUNDS: usize = 40;
+/// Rounds of places, scale and noise on the map as it is.
+const FIRST_ROUNDS: usize = 5;
+/// Rounds of places, landmarks and noise.
+const ROUNDS: usize = 8;
 /// Ranges of a step that takes part, at least: two fix its place, the third tells something.
 const FEWEST: usize = 3;
 /// Misses of more than this many standard deviations are outliers.
@@ -60,7 +69,7 @@ pub(crate) fn fit(
     for (component, members) in components.iter().enumerate() {
         members.iter().enumerate().for_each(|(k, &member)| place[member as usize] = (component, k as u32));
     }
-    let mut steps: Vec<Vec<Vec<Reading>>> = vec![Vec::new(); components.len()];
+    let mut steps: Vec<Vec<Vec<(u32, f64)>>> = vec![Vec::new(); components.len()];
     for ranges in log.ranges().chunk_by(|a, b| a.step == b.step) {
         let mut left: Vec<&Range> = ranges.iter().collect();
         while let Some(first) = left.first() {
@@ -68,10 +77,7 @@ pub(crate) fn fit(
             let (own, others): (Vec<&Range>, _) =
                 left.iter().partition(|range| place[range.landmark as usize].0 == component);
             if own.len() >= FEWEST {
-                let reading = |range: &&Range| Reading {
-                    landmark: place[range.landmark as usize].1,
-                    metres: range.metres,
-                };
+                let reading = |range: &&Range| (place[range.landmark as usize].1, range.metres);
                 steps[component].push(own.iter().map(reading).collect());
             }
             left = others;
@@ -103,26 +109,36 @@ pub(crate) fn in_metres(map: GlobalMap) -> Result<GlobalMap, MapError> {
 }
 
 /// `None`, and the points as they were, if no step takes part or all landmarks of the steps are in one place.
-fn fit_component(steps: &[Vec<Reading>], points: &mut Vec<Point>) -> Option<RangeReport> {
-    let mut sweep = Sweep::start(steps, points)?;
-    for _ in 0..ROUNDS {
+fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<RangeReport> {
+    let readings = Readings::new(steps, points.len());
+    let edges = delaunay_edges(points).expect("positions of a map are finite (bug in covimap)");
+    let mut sweep = Sweep::start(&readings, points, &edges)?;
+    for _ in 0..FIRST_ROUNDS {
         sweep.place_steps();
         sweep.fit_scale();
-        sweep.move_landmarks();
+        sweep.fit_noise();
     }
-    sweep.place_steps();
-    sweep.fit_scale();
-    let misses = sweep.misses();
-    let outliers = misses.par_iter().filter(|miss| miss.abs() > OUTLIER * sweep.deviation).count();
+    for _ in 0..ROUNDS {
+        sweep.place_across();
+        sweep.move_landmarks();
+        sweep.place_steps();
+        sweep.fit_noise();
+    }
+    let misses: Vec<(f64, f64)> = (0..readings.all().len())
+        .map(|place| (sweep.look(place).1, place))
+        .map(|(miss, place)| (miss, sweep.variance(place, miss)))
+        .collect();
+    let outliers =
+        misses.iter().filter(|(miss, variance)| miss * miss > OUTLIER * OUTLIER * variance).count();
     let report = RangeReport {
         ranges: misses.len() as u64,
         steps: steps.len() as u64,
         scale: sweep.scale,
         scale_error: sweep.scale_error(),
-        deviation: sweep.deviation,
+        deviation: (misses.iter().map(|miss| miss.1).sum::<f64>() / misses.len() as f64).sqrt(),
         outliers: outliers as u64,
     };
-    *points = sweep.points;
+    *points = sweep.points.iter().map(|point| point.map(|c| c / sweep.scale)).collect();
     put_in_frame(points, &mut []);
     Some(report)
 }

@@ -1,195 +1,231 @@
-//! One round after the other: places of the steps, scale, landmarks.
+//! One round after the other: places of the steps, noise, landmarks. Lengths are metres.
 
 use covimap_embed::Point;
 use rayon::prelude::*;
 
+use super::noise::Noise;
+use super::normal::{Normal, add, length, sub, times};
+use super::readings::{Reading, Readings};
+use super::reduced::Reduced;
+
 /// Gauss-Newton steps of a place in one round.
 const STEPS: usize = 3;
-/// Share of the mean curvature added to both axes: landmarks on a line leave a place free across it.
+/// Share of the curvature added to both axes: landmarks on a line leave a place free across it.
 const RIDGE: f64 = 0.01;
-/// The map holds a landmark within this share of a median range.
-const HELD: f64 = 0.2;
+/// What the sightings say of the length between neighbours on the map is within this share of it.
+const HELD: f64 = 0.1;
 /// Weights fall from this many standard deviations on.
 const FAR: f64 = 3.0;
-/// Standard deviation over the median of the absolute values, of a normal distribution.
-const NORMAL: f64 = 1.4826;
+/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the last digit still needs a
+/// width.
+const LEAST: f64 = 1e-3;
 
-/// A range within a component.
+/// Neighbours on the map, and how far it has them apart.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reading {
-    pub landmark: u32,
-    pub metres: f64,
+pub(super) struct Edge {
+    pub ends: [u32; 2],
+    pub length: f64,
+    pub weight: f64,
 }
 
 /// All unknowns.
 pub(super) struct Sweep<'a> {
-    steps: &'a [Vec<Reading>],
-    /// Where the map has the landmarks.
-    map: Vec<Point>,
+    pub readings: &'a Readings,
     pub points: Vec<Point>,
     places: Vec<Point>,
+    pub edges: Vec<Edge>,
+    /// Of the ranges.
+    pub weights: Vec<f64>,
+    pub noise: Noise,
     /// Metres a map unit.
     pub scale: f64,
-    /// Standard deviation of the ranges, metres.
-    pub deviation: f64,
-    /// Median of all ranges, metres.
+    /// Of all ranges.
     median: f64,
-}
-
-/// Normal equations of a point: xx, xy, yy and the right side.
-#[derive(Debug, Clone, Copy, Default)]
-struct Normal {
-    matrix: [f64; 3],
-    side: Point,
-}
-
-impl Normal {
-    /// Adds the wish to go `by` along the unit vector.
-    fn add(&mut self, [x, y]: Point, by: f64, weight: f64) {
-        let terms = [x * x, x * y, y * y];
-        self.matrix.iter_mut().zip(terms).for_each(|(sum, term)| *sum += weight * term);
-        self.side = [self.side[0] + weight * by * x, self.side[1] + weight * by * y];
-    }
-
-    fn solve(&self, ridge: f64) -> Point {
-        let [xx, xy, yy] = [self.matrix[0] + ridge, self.matrix[1], self.matrix[2] + ridge];
-        let determinant = xx * yy - xy * xy;
-        if determinant <= 0.0 {
-            return [0.0; 2];
-        }
-        let [x, y] = self.side;
-        [(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant]
-    }
 }
 
 impl<'a> Sweep<'a> {
     /// Places in the middle of what their steps show, and the scale that the median range then has. `None` without a
     /// length.
-    pub fn start(steps: &'a [Vec<Reading>], points: &[Point]) -> Option<Self> {
-        let middle = |step: &Vec<Reading>| {
-            let sum = step.iter().fold([0.0; 2], |sum, reading| add(sum, points[reading.landmark as usize]));
-            sum.map(|c| c / step.len() as f64)
+    pub fn start(readings: &'a Readings, points: &[Point], edges: &[(u32, u32)]) -> Option<Self> {
+        let middle = |step: usize| {
+            let own = &readings.all()[readings.of_step(step)];
+            let sum = own.iter().fold([0.0; 2], |sum, reading| add(sum, points[reading.landmark as usize]));
+            sum.map(|c| c / own.len() as f64)
         };
-        let places: Vec<Point> = steps.iter().map(middle).collect();
-        let mut ranges: Vec<f64> = steps.iter().flatten().map(|reading| reading.metres).collect();
-        let each = steps.iter().zip(&places);
-        let mut lengths: Vec<f64> = each
-            .flat_map(|(step, &place)| {
-                step.iter().map(move |reading| length(sub(points[reading.landmark as usize], place)))
-            })
-            .collect();
-        let (range, away) = (median(&mut ranges)?, median(&mut lengths)?);
-        (away > 0.0).then(|| Self {
-            steps,
-            map: points.to_vec(),
-            points: points.to_vec(),
-            places,
-            scale: range / away,
-            deviation: range,
-            median: range,
+        let places: Vec<Point> = (0..readings.steps()).map(middle).collect();
+        let mut ranges: Vec<f64> = readings.all().iter().map(|reading| reading.metres).collect();
+        let away = readings
+            .all()
+            .iter()
+            .map(|reading| length(sub(points[reading.landmark as usize], places[reading.step as usize])));
+        let (range, away) = (median(&mut ranges)?, median(&mut away.collect::<Vec<_>>())?);
+        let edge = |&(a, b): &(u32, u32)| {
+            let length = length(sub(points[b as usize], points[a as usize]));
+            (length > 0.0).then(|| Edge { ends: [a, b], length, weight: (HELD * length).powi(-2) })
+        };
+        (away > 0.0).then(|| {
+            let mut sweep = Self {
+                readings,
+                points: points.to_vec(),
+                places,
+                edges: edges.iter().filter_map(edge).collect(),
+                weights: vec![1.0; readings.all().len()],
+                noise: Noise { fixed: range * range, growing: 0.0 },
+                scale: 1.0,
+                median: range,
+            };
+            sweep.enlarge(range / away);
+            sweep
         })
     }
 
-    fn weight(&self, miss: f64) -> f64 {
-        let squared = (FAR * self.deviation).powi(2);
-        (squared / (squared + miss * miss)).powi(2)
+    /// The direction from the place to the landmark of a range, and by how much the range is longer than that way.
+    pub fn look(&self, place: usize) -> (Point, f64) {
+        let reading = &self.readings.all()[place];
+        self.look_from(self.places[reading.step as usize], place)
     }
 
-    /// From the place to the landmark, as a unit vector, and by how much the range is longer than that, in metres.
-    fn look(&self, place: Point, reading: &Reading) -> (Point, f64) {
-        let way = sub(self.points[reading.landmark as usize], place);
+    fn look_from(&self, from: Point, place: usize) -> (Point, f64) {
+        let reading = &self.readings.all()[place];
+        let way = sub(self.points[reading.landmark as usize], from);
         let away = length(way).max(f64::MIN_POSITIVE);
-        (way.map(|c| c / away), reading.metres - self.scale * away)
+        (way.map(|c| c / away), reading.metres - away)
     }
 
-    /// Every place to where the ranges of its step fit best.
+    /// The direction of an edge, and by how much it was longer on the map.
+    pub fn strain(&self, edge: usize) -> (Point, f64) {
+        let Edge { ends: [a, b], length: wanted, .. } = self.edges[edge];
+        let way = sub(self.points[b as usize], self.points[a as usize]);
+        let away = length(way).max(f64::MIN_POSITIVE);
+        (way.map(|c| c / away), wanted - away)
+    }
+
+    /// `1 / v (c^2 / (c^2 + e^2 / v))^2` for a miss `e` of the variance `v`.
+    fn weight(&self, place: usize, miss: f64) -> f64 {
+        let variance = self.variance(place, miss);
+        (FAR * FAR / (FAR * FAR + miss * miss / variance)).powi(2) / variance
+    }
+
+    /// Of a range that misses by so much: by the length that the map has for it. Those of near landmarks count as
+    /// no more exact than at half the median: no place is known as well as that.
+    pub fn variance(&self, place: usize, miss: f64) -> f64 {
+        self.noise.variance((self.readings.all()[place].metres - miss).max(0.5 * self.median))
+    }
+
+    /// Every place to where the ranges of its step fit best, and the weights of the ranges there.
     pub fn place_steps(&mut self) {
-        let best = |(step, &start): (&Vec<Reading>, &Point)| {
-            let mut place = start;
-            for _ in 0..STEPS {
-                let mut normal = Normal::default();
-                for reading in step {
-                    let (toward, miss) = self.look(place, reading);
-                    normal.add(toward, -miss / self.scale, self.weight(miss));
-                }
-                let ridge = RIDGE * (normal.matrix[0] + normal.matrix[2]);
-                place = add(place, normal.solve(ridge));
-            }
-            place
-        };
-        self.places = self.steps.par_iter().zip(&self.places).map(best).collect();
+        self.place_from(|_, _, start| start);
     }
 
-    /// Eq. (1), and the deviation that is then left.
+    /// The same from the other side of the landmarks of the step, where that fits better: ranges to landmarks on a
+    /// line fit on both sides.
+    pub fn place_across(&mut self) {
+        self.place_from(|now, step, start| {
+            let across = now.settled(step, now.mirrored(step, start));
+            if now.cost(step, across) < now.cost(step, start) { across } else { start }
+        });
+    }
+
+    fn place_from(&mut self, first: impl Fn(&Self, usize, Point) -> Point + Sync) {
+        let best = |(step, &start): (usize, &Point)| self.settled(step, first(self, step, start));
+        self.places = self.places.par_iter().enumerate().map(best).collect();
+        self.weights = (0..self.weights.len())
+            .into_par_iter()
+            .map(|place| self.weight(place, self.look(place).1))
+            .collect();
+    }
+
+    /// Where some Gauss-Newton steps lead.
+    fn settled(&self, step: usize, mut from: Point) -> Point {
+        for _ in 0..STEPS {
+            let mut normal = Normal::default();
+            for place in self.readings.of_step(step) {
+                let (toward, miss) = self.look_from(from, place);
+                normal.add(toward, -miss, self.weight(place, miss));
+            }
+            from = add(from, times(normal.inverse(RIDGE), normal.side));
+        }
+        from
+    }
+
+    /// The place on the other side of the line that best goes along the landmarks of a step.
+    fn mirrored(&self, step: usize, from: Point) -> Point {
+        let own = &self.readings.all()[self.readings.of_step(step)];
+        let at = |reading: &Reading| self.points[reading.landmark as usize];
+        let middle =
+            own.iter().fold([0.0; 2], |sum, reading| add(sum, at(reading))).map(|c| c / own.len() as f64);
+        let (mut even, mut odd) = (0.0, 0.0);
+        for reading in own {
+            let [x, y] = sub(at(reading), middle);
+            (even, odd) = (even + x * x - y * y, odd + 2.0 * x * y);
+        }
+        // The line goes along half the angle of (even, odd); a mirror doubles it again.
+        let size = length([even, odd]).max(f64::MIN_POSITIVE);
+        let ([c, s], [x, y]) = ([even / size, odd / size], sub(from, middle));
+        add(middle, [c * x + s * y, s * x - c * y])
+    }
+
+    /// What the ranges of a step cost from a place: `sum c^2 (e^2 / v) / (c^2 + e^2 / v)`, of which the weights are the slope.
+    fn cost(&self, step: usize, from: Point) -> f64 {
+        let cost = |place: usize| {
+            let miss = self.look_from(from, place).1;
+            let square = miss * miss / self.variance(place, miss);
+            FAR * FAR * square / (FAR * FAR + square)
+        };
+        self.readings.of_step(step).map(cost).sum()
+    }
+
+    /// Eq. (1).
     pub fn fit_scale(&mut self) {
         let (mut across, mut square) = (0.0, 0.0);
-        for (step, &place) in self.steps.iter().zip(&self.places) {
-            for reading in step {
-                let away = length(sub(self.points[reading.landmark as usize], place));
-                let weight = self.weight(self.look(place, reading).1);
-                across += weight * reading.metres * away;
-                square += weight * away * away;
-            }
+        for (place, reading) in self.readings.all().iter().enumerate() {
+            let away = reading.metres - self.look(place).1;
+            across += self.weights[place] * reading.metres * away;
+            square += self.weights[place] * away * away;
         }
         if across > 0.0 && square > 0.0 {
-            self.scale = across / square;
-        }
-        // Two of the ranges of every step went into its place.
-        let mut misses: Vec<f64> = self.misses().into_iter().map(f64::abs).collect();
-        let free = misses.len() as f64 / (misses.len() as f64 - 2.0 * self.steps.len() as f64).max(1.0);
-        let middle = median(&mut misses).unwrap_or(0.0);
-        // What is exact to the last digit still needs a width.
-        self.deviation = (NORMAL * middle * free.sqrt()).max(1e-9 * self.median);
-    }
-
-    /// Every landmark to where the ranges to it fit best, held by the map.
-    pub fn move_landmarks(&mut self) {
-        let mut normals = vec![Normal::default(); self.points.len()];
-        for (step, &place) in self.steps.iter().zip(&self.places) {
-            for reading in step {
-                let (toward, miss) = self.look(place, reading);
-                normals[reading.landmark as usize].add(toward, miss / self.scale, self.weight(miss));
-            }
-        }
-        let hold = (self.deviation / (HELD * self.median)).powi(2);
-        for ((point, &home), normal) in self.points.iter_mut().zip(&self.map).zip(&mut normals) {
-            let back = sub(home, *point);
-            normal.side = add(normal.side, back.map(|c| hold * c));
-            *point = add(*point, normal.solve(hold));
+            self.enlarge(across / square);
         }
     }
 
-    /// By how much every range is longer than the map has it, metres.
-    pub fn misses(&self) -> Vec<f64> {
-        let of_step = |(step, place): (&Vec<Reading>, &Point)| {
-            step.iter().map(|reading| self.look(*place, reading).1).collect::<Vec<_>>()
+    fn enlarge(&mut self, factor: f64) {
+        self.scale *= factor;
+        self.points.iter_mut().chain(&mut self.places).flatten().for_each(|c| *c *= factor);
+        for edge in &mut self.edges {
+            edge.length *= factor;
+            edge.weight /= factor * factor;
+        }
+    }
+
+    /// The noise that the misses tell, each made larger by what its own place took away from it.
+    pub fn fit_noise(&mut self) {
+        let reduced = Reduced::new(self);
+        let look = |(place, reading): (usize, &Reading)| {
+            let miss = self.look(place).1;
+            let free = 1.0 - reduced.leverage(place);
+            (free > 0.1).then(|| (reading.metres - miss, miss / free.sqrt()))
         };
-        self.steps.iter().zip(&self.places).flat_map(of_step).collect()
+        let looks: Vec<(f64, f64)> = self.readings.all().par_iter().enumerate().filter_map(look).collect();
+        self.noise = Noise::fit(looks, (LEAST * self.median).powi(2));
     }
 
-    /// Standard error of eq. (1).
+    /// Every landmark to where ranges and map fit best.
+    pub fn move_landmarks(&mut self) {
+        let moves = Reduced::new(self).solve();
+        self.points.iter_mut().zip(moves).for_each(|(point, by)| *point = add(*point, by));
+    }
+
+    /// Standard error of the scale, metres a map unit: `s / sqrt(sum w d^2)`.
     pub fn scale_error(&self) -> f64 {
-        let lengths = self.steps.iter().zip(&self.places).flat_map(|(step, &place)| {
-            step.iter().map(move |reading| length(sub(self.points[reading.landmark as usize], place)))
-        });
-        self.deviation / lengths.map(|away| away * away).sum::<f64>().sqrt()
+        let away = |(place, reading): (usize, &Reading)| {
+            self.weights[place] * (reading.metres - self.look(place).1).powi(2)
+        };
+        self.scale / self.readings.all().iter().enumerate().map(away).sum::<f64>().sqrt()
     }
-}
-
-fn add(a: Point, b: Point) -> Point {
-    [a[0] + b[0], a[1] + b[1]]
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn length([x, y]: Point) -> f64 {
-    x.hypot(y)
 }
 
 /// `None` of nothing.
-fn median(values: &mut [f64]) -> Option<f64> {
+pub(super) fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

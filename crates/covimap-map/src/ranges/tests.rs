@@ -70,8 +70,9 @@ fn ranges_make_the_map_metric_and_more_exact() {
         // Five per cent of .4 m, the root mean square of ranges up to .6 m.
         assert!((0.012..0.024).contains(&report.deviation), "{report:?}");
         assert!(
-            // Noise that grows with the range has longer tails than a normal distribution.
-            report.outliers < report.ranges / 100 && report.scale_error < 0.003 * report.scale,
+            // Beyond four deviations is one in 16 000 of normal noise; a few places are on the wrong side of
+            // landmarks in line.
+            report.outliers < report.ranges / 200 && report.scale_error < 0.003 * report.scale,
             "{report:?}"
         );
         let fit = &map.alignment()[0];
@@ -83,8 +84,38 @@ fn ranges_make_the_map_metric_and_more_exact() {
         let scale = |point: Point| point.map(|c| c * report.scale);
         let plain: Vec<Point> = without.landmarks().iter().map(|landmark| scale(landmark.position)).collect();
         assert!(without.alignment().is_empty());
-        assert!(off < 0.6 * errors(&plain, &truth).0, "seed {seed}: {off} {:?}", errors(&plain, &truth));
+        assert!(off < 0.25 * errors(&plain, &truth).0, "seed {seed}: {off} {:?}", errors(&plain, &truth));
     }
+}
+
+#[test]
+fn exact_ranges_take_out_what_bends_a_map_as_a_whole() {
+    // A corridor of 6 by .6 metres, bent into an arc of 60 degrees with a radius of 6 m.
+    let truth = scattered(60, [6.0, 0.6], 3);
+    let mut bent: Vec<Point> = truth
+        .iter()
+        .map(|[x, y]| {
+            let (sin, cos) = (x / 6.0).sin_cos();
+            [(6.0 - y) * sin, 6.0 - (6.0 - y) * cos]
+        })
+        .collect();
+    let step = |k: u32| {
+        let from = [f64::from(k) * 0.05, 0.3 + 0.2 * f64::from(k).sin()];
+        let away = truth.iter().map(|[x, y]| (x - from[0]).hypot(y - from[1]));
+        (0..).zip(away).filter(|range| range.1 < 0.8).collect::<Vec<(u32, f64)>>()
+    };
+    let steps: Vec<_> = (0..120).map(step).filter(|step| step.len() >= FEWEST).collect();
+    let ends = |points: &[Point]| {
+        let end = |sign: f64| {
+            (0..60).max_by(|&i, &j| (sign * truth[i][0]).total_cmp(&(sign * truth[j][0]))).unwrap()
+        };
+        let [a, b] = [points[end(1.0)], points[end(-1.0)]];
+        (a[0] - b[0]).hypot(a[1] - b[1])
+    };
+    // The chord of the arc is 2 sin(30 degrees) of the radius: 6 % shorter than the corridor.
+    assert!(ends(&bent) < 0.97 * ends(&truth));
+    let report = fit_component(&steps, &mut bent).unwrap();
+    assert!((report.scale * ends(&bent) / ends(&truth) - 1.0).abs() < 1e-3, "{report:?}");
 }
 
 #[test]
@@ -105,7 +136,7 @@ fn exact_ranges_give_the_truth() {
     let map = mapped(&log);
     let points: Vec<Point> = map.landmarks().iter().map(|landmark| landmark.position).collect();
     let (off, ratio) = errors(&points, &truth);
-    assert!((ratio - 1.0).abs() < 2e-3 && off < 4e-3, "{ratio} {off}");
+    assert!((ratio - 1.0).abs() < 1e-3 && off < 1e-3, "{ratio} {off}");
 }
 
 #[test]
@@ -121,7 +152,7 @@ fn too_few_ranges_leave_the_map_as_it_is() {
     assert_eq!(few.landmarks(), bare.landmarks());
     assert!(few.alignment().is_empty() && few.report().components[0].ranges.is_none());
     // Landmarks at one place have no length to compare with.
-    let reading = |landmark| Reading { landmark, metres: 1.0 };
+    let reading = |landmark| (landmark, 1.0);
     let mut pile = vec![[1.0, 1.0]; 3];
     assert_eq!(fit_component(&[(0..3).map(reading).collect()], &mut pile), None);
     assert_eq!(pile, [[1.0, 1.0]; 3]);

@@ -156,3 +156,17 @@ fn many_routes_are_those_one_by_one() {
     }
     assert!(matches!(roads.route_of_each(&[["L0", "X"]]), Err(PlanError::UnknownLandmark { .. })));
 }
+
+#[test]
+fn prepared_roads_give_the_same_routes() {
+    // More landmarks than a cell holds.
+    let points = scattered(2500, 12);
+    let index = index_of(&points, &lines_among(&points, 2));
+    let flat = Roads::new(&index, RoadParams::default()).unwrap();
+    let prepared = flat.clone().prepare();
+    let pairs: Vec<[LandmarkId; 2]> = (0..40).map(|i| [LandmarkId(i * 61), LandmarkId(i * 17)]).collect();
+    let [expected, found] = [flat, prepared].map(|roads| roads.route_of_each(&pairs).unwrap());
+    for (expected, found) in expected.iter().zip(&found) {
+        assert!((expected.cost - found.cost).abs() <= 1e-12 * expected.cost);
+    }
+}

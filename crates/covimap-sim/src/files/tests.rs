@@ -40,6 +40,31 @@ fn files_hold_what_the_simulation_saw() {
 }
 
 #[test]
+fn ranges_are_written_too() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut spec = SimSpec::large(Floor::Ring {}, 30, 5);
+    spec.run.sensor.range_noise = Some(0.05);
+    write(&spec, scratch.path()).unwrap();
+    let log = fs::File::open(scratch.path().join(OBSERVATIONS)).unwrap();
+    let log = SightingLog::read_from(log, OBSERVATIONS, Some(LogFormat::Jsonl), &Silent).unwrap();
+    let (_, recording) = simulate(&spec);
+    let mut expected: Vec<(usize, String, f64)> = Vec::new();
+    for (number, step) in recording.steps().enumerate() {
+        expected.extend(
+            step.seen.iter().zip(step.ranges).map(|(seen, &range)| (number, format!("L{seen}"), range)),
+        );
+    }
+    let name = |landmark: u32| log.names().name(LandmarkId(landmark)).to_owned();
+    let mut read: Vec<_> =
+        log.ranges().iter().map(|range| (range.step, name(range.landmark), range.metres)).collect();
+    let order = |a: &(usize, String, f64), b: &(usize, String, f64)| (a.0, &a.1).cmp(&(b.0, &b.1));
+    expected.sort_by(order);
+    read.sort_by(order);
+    assert!(read.len() > 500);
+    assert_eq!(read, expected);
+}
+
+#[test]
 fn the_same_settings_give_the_same_bytes_and_replace_old_files() {
     let scratch = tempfile::tempdir().unwrap();
     let spec = SimSpec::paper_room(10, 1.5, 100);

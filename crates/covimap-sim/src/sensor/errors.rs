@@ -15,11 +15,11 @@ pub(super) struct Errors {
 
 impl Errors {
     /// Loses each sighting with the one probability; turns what is left into a random other landmark with
-    /// the other. Three random numbers a sighting, whatever the rates: a higher rate spoils the same
+    /// the other, seen from as far. Three random numbers a sighting, whatever the rates: a higher rate spoils the same
     /// sightings and more.
-    pub(super) fn apply(&mut self, seen: &mut Vec<u32>) {
+    pub(super) fn apply(&mut self, sightings: &mut Vec<(u32, f64)>) {
         let Self { spec, landmarks, rng } = self;
-        seen.retain_mut(|number| {
+        sightings.retain_mut(|(number, _)| {
             let [lost, mistaken, other]: [f64; 3] = rng.random();
             if mistaken < spec.mistaken && *landmarks > 1 {
                 *number = another(*number, *landmarks, other);

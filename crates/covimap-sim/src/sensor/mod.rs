@@ -3,6 +3,7 @@
 mod arcs;
 mod errors;
 mod range;
+mod ranging;
 mod visual_angle;
 
 #[cfg(test)]
@@ -18,6 +19,7 @@ use crate::spec::{ErrorSpec, Recognition, SensorSpec};
 use crate::world::World;
 use errors::Errors;
 use range::{RangeCurve, RangeSensor};
+use ranging::Ranging;
 use visual_angle::{Camera, Limits, VisualAngle};
 
 /// Tells what is recognised.
@@ -29,7 +31,10 @@ trait Sensor: Send {
 /// A sensor with its errors.
 pub(crate) struct Observer {
     sensor: Box<dyn Sensor>,
+    ranging: Option<Ranging>,
     errors: Option<Errors>,
+    /// Of the last look: landmarks, and metres if ranges are measured.
+    look: Vec<(u32, f64)>,
 }
 
 impl Observer {
@@ -42,7 +47,12 @@ impl Observer {
         let landmarks = u32::try_from(world.landmarks().len()).expect("checked before (bug in covimap)");
         let is_spoilt = errors.missed > 0.0 || errors.mistaken > 0.0;
         let errors = is_spoilt.then(|| Errors { spec: errors, landmarks, rng: stream(seed, Stream::Errors) });
-        Ok(Self { sensor: sensor(world, spec, seed)?, errors })
+        let ranging = spec.range_noise.map(|noise| Ranging {
+            noise,
+            landmarks: world.landmarks().to_vec(),
+            rng: stream(seed, Stream::Ranges),
+        });
+        Ok(Self { sensor: sensor(world, spec, seed)?, ranging, errors, look: Vec::new() })
     }
 
     /// Fills the list with the landmarks seen from the pose, in ascending order, each once.
@@ -51,11 +61,25 @@ impl Observer {
         self.sensor.sense(pose, seen);
         // Sorted first, so that the errors do not depend on the order in which the sensor looks.
         seen.sort_unstable();
+        // A landmark that is taken for another is where it is: measured first.
+        let measured = |&number: &u32| {
+            (number, self.ranging.as_mut().map_or(0.0, |ranging| ranging.measure(pose, number)))
+        };
+        self.look.clear();
+        self.look.extend(seen.iter().map(measured));
         if let Some(errors) = &mut self.errors {
-            errors.apply(seen);
-            seen.sort_unstable();
-            seen.dedup();
+            errors.apply(&mut self.look);
+            self.look.sort_by_key(|sighting| sighting.0);
+            self.look.dedup_by_key(|sighting| sighting.0);
+            seen.clear();
+            seen.extend(self.look.iter().map(|sighting| sighting.0));
         }
+    }
+
+    /// The ranges to the landmarks of the last look, in its order, metres; none unless they are measured.
+    pub(crate) fn ranges(&self) -> impl Iterator<Item = f64> {
+        let measured = if self.ranging.is_some() { self.look.as_slice() } else { &[] };
+        measured.iter().map(|sighting| sighting.1)
     }
 }
 

@@ -128,3 +128,39 @@ fn large_worlds_are_seen_as_densely_as_intended() {
         assert!(summary.median_sightings >= 250, "{} {summary:?}", floor.name());
     }
 }
+
+#[test]
+fn ranges_are_distances_with_the_noise_asked_for() {
+    let mut spec = SimSpec::large(Floor::Hall {}, 100, 40);
+    let without = record(&spec, 1, 1);
+    assert!(without.steps().all(|step| step.ranges.is_empty()));
+    let world = World::new(&spec.world, 1).unwrap();
+    for noise in [0.0, 0.1] {
+        spec.run.sensor.range_noise = Some(noise);
+        let recording = record(&spec, 1, 1);
+        let (mut sum, mut square, mut count) = (0.0, 0.0, 0.0);
+        for (step, bare) in recording.steps().zip(without.steps()) {
+            // The same sightings, each with a range.
+            assert_eq!((step.seen, step.pose, step.ranges.len()), (bare.seen, bare.pose, bare.seen.len()));
+            for (&number, range) in step.seen.iter().zip(step.ranges) {
+                let [x, y] = world.landmarks()[number as usize];
+                let off = (range / (x - step.pose.at[0]).hypot(y - step.pose.at[1])).ln();
+                (sum, square, count) = (sum + off, square + off * off, count + 1.0);
+            }
+        }
+        // Some 34 000 ranges: standard errors of .1 / sqrt(34000) = .0005 and .7 of that.
+        assert!(count > 30_000.0 && (sum / count).abs() < 0.002, "{count} {}", sum / count);
+        assert!(((square / count).sqrt() - noise).abs() < 0.002, "{}", square / count);
+    }
+}
+
+#[test]
+fn a_landmark_taken_for_another_has_the_range_of_what_is_there() {
+    let mut spec = SimSpec::large(Floor::Hall {}, 100, 5);
+    spec.run.sensor.range_noise = Some(0.0);
+    spec.run.errors.mistaken = 0.2;
+    // Whatever it is called, it stands within reach: 0.55 m and eight times 0.04 m.
+    let recording = record(&spec, 1, 1);
+    assert!(recording.steps().all(|step| step.ranges.len() == step.seen.len()));
+    assert!(recording.steps().all(|step| step.ranges.iter().all(|&range| range > 0.0 && range < 0.87)));
+}

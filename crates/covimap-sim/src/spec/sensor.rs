@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{require, require_positive, require_share};
+use super::{require, require_not_negative, require_positive, require_share};
 use crate::angle::Angle;
 use crate::error::SimError;
 
@@ -49,6 +49,9 @@ pub struct SensorSpec {
     /// Least and greatest detectability, 0 to 1: each landmark has its own, uniform between them, and its
     /// chance to be recognised is multiplied by it. Default 1 for both.
     pub detectability: [f64; 2],
+    /// Noise of ranges, `>= 0`: every step tells the distance to the middle of each landmark seen, `d exp(noise z)` for a standard normal
+    /// `z`, so that .05 is about five per cent. Default none: no ranges.
+    pub range_noise: Option<f64>,
 }
 
 impl Default for SensorSpec {
@@ -57,6 +60,7 @@ impl Default for SensorSpec {
             recognition: Recognition::Range { range: 0.55, edge: 0.04, detection: 0.95 },
             view: Angle::FULL,
             detectability: [1.0; 2],
+            range_noise: None,
         }
     }
 }
@@ -69,6 +73,9 @@ impl SensorSpec {
         let [low, high] = self.detectability;
         require_share("least detectability", low)?;
         require((low..=1.0).contains(&high), "greatest detectability", high, "between the least and 1")?;
+        if let Some(noise) = self.range_noise {
+            require_not_negative("range noise", noise)?;
+        }
         match self.recognition {
             Recognition::Range { range, edge, detection } => {
                 require_positive("range", range)?;

@@ -69,6 +69,9 @@ fn every_setting_of_a_sensor_is_checked() {
     for bad in [0.0, 361.0, f64::NAN] {
         assert_eq!(refusal(|spec| spec.run.sensor.view = Angle::from_deg(bad)), "view");
     }
+    for bad in [-0.1, f64::NAN, f64::INFINITY] {
+        assert_eq!(refusal(|spec| spec.run.sensor.range_noise = Some(bad)), "range noise");
+    }
     assert_eq!(refusal(|spec| spec.run.sensor.detectability = [-0.1, 1.0]), "least detectability");
     assert_eq!(refusal(|spec| spec.run.sensor.detectability = [0.5, 0.4]), "greatest detectability");
     let range = |range, edge, detection| {

@@ -51,6 +51,9 @@ pub struct Options {
     /// Factor on every landmark's chance, or the least and the greatest of factors that differ [default: 1]
     #[arg(long, value_name = "P[,P]", value_parser = range)]
     detectability: Option<[f64; 2]>,
+    /// Tell the range to everything seen, too; with noise of this share of it [default: no ranges]
+    #[arg(long, value_name = "SHARE")]
+    range_noise: Option<f64>,
     /// Share of sightings that are lost [default: 0]
     #[arg(long, value_name = "SHARE")]
     missed: Option<f64>,
@@ -95,6 +98,7 @@ impl Options {
     fn apply_sensor(mut self, spec: &mut SensorSpec) -> anyhow::Result<()> {
         set(&mut spec.view, &mut self.view.map(Angle::from_deg));
         set(&mut spec.detectability, &mut self.detectability);
+        set(&mut spec.range_noise, &mut self.range_noise.map(Some));
         match (self.recognition, spec.recognition) {
             (Some(Kind::Range), Recognition::VisualAngle { .. }) => {
                 spec.recognition = SensorSpec::default().recognition;
