@@ -41,7 +41,7 @@ mod patch;
 use patch::Patch;
 
 /// Strain, over the median, from which on an object is a seed.
-const UNUSUAL: f64 = 1.8;
+const UNUSUAL: f64 = 2.5;
 /// Strain below which no place is looked at: distances are off by a thousandth.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Share of the stress of its surroundings that a mirrored place must save. Distances that are a little wrong make

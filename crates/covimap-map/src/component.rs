@@ -12,7 +12,7 @@ use crate::stitch::Stitched;
 use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport, Stage};
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
-const ROUGH: StopRule = StopRule { max_iterations: 20, tolerance: 1e-3 };
+const ROUGH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-3 };
 /// The polish from one law to the next.
 const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
 

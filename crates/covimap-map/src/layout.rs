@@ -19,7 +19,7 @@ use crate::stitch::{Stitched, stitch};
 use crate::{AutoParams, LinkGraph, MapError, Observer, Region, RegionCover, RegionParams, Stage, variants};
 
 /// Steps by which a local map follows the law.
-const FOLLOWING: StopRule = StopRule { max_iterations: 50, tolerance: 1e-6 };
+const FOLLOWING: StopRule = StopRule { max_iterations: 30, tolerance: 1e-6 };
 /// Landmarks for each hinge that is borne: with fewer, other layouts are tried.
 const BORNE: usize = 1000;
 

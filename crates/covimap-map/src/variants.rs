@@ -16,7 +16,7 @@
 //! # Complexity
 //! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size.
 
-use covimap_embed::{Correspondence, Point, ProcrustesOptions, Reflection, StopRule, newton, procrustes};
+use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
 use rayon::prelude::*;
 
 use crate::distances::Law;
@@ -35,7 +35,7 @@ const PIECE: [usize; 2] = [400, 1600];
 /// now and then.
 const EVIDENCE: f64 = 100.0;
 /// How a piece is polished.
-const POLISH: StopRule = StopRule { max_iterations: 25, tolerance: 1e-6 };
+const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
 
 /// The best of the layout `first`, which the maps of `cover` were stitched to, and of others.
 ///
@@ -127,16 +127,20 @@ fn best_map(
 ) -> Result<LocalMap, MapError> {
     let distances = ground.distances.expect("who has a law has learnt it (bug in covimap)");
     let pairs = distances.inside(law, ground.graph, &piece.members, None);
+    let mut newton = Newton::new(&pairs);
     let mut best: Option<LocalMap> = None;
     for layout in layouts {
         if ground.observer.interrupted() {
             return Err(MapError::Interrupted);
         }
         let start: Vec<Point> = piece.members.iter().map(|&member| layout[member as usize]).collect();
-        let map = newton(&pairs, &start, POLISH)?;
+        let map = newton.minimise(&pairs, &start, POLISH, || true)?;
         if best.as_ref().is_none_or(|best| map.stress1 < best.stress1) {
             best = Some(LocalMap { points: map.points, stress1: map.stress1 });
         }
     }
     Ok(best.expect("there is the first layout (bug in covimap)"))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! The distance function of a log: learnt from the map that it makes.
 //!
-//! Regions, stitching and a rough polish need distances before anything is known of the sensor,
-//! and take the paper's logarithm. Their map shows how frequencies really fall with distance. So
+//! Regions need distances before anything is known of the sensor, and take the paper's logarithm. A first curve is fitted to
+//! their local maps, which are stitched and roughly polished under it. That map shows how frequencies really fall with distance. So
 //! a curve is fitted to it, the map is polished with the distances of that curve, and again:
 //! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
 //!

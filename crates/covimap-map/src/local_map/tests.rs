@@ -71,3 +71,30 @@ fn a_region_that_falls_apart_has_no_map() {
         Err(EmbedError::UnknownDistance { i: 0, j: 2 })
     ));
 }
+
+#[test]
+fn a_length_is_told_by_the_regions_of_both_ends() {
+    // Landmarks 0 and 1 in the core of the first region, 2 and 3 in that of the second.
+    let cover = RegionCover::of_members(4, &[&[0, 1, 2], &[2, 3]]);
+    let map = |points: &[Point]| LocalMap { points: points.to_vec(), stress1: 0.0 };
+    let maps = [map(&[[0.0, 0.0], [3.0, 4.0], [6.0, 8.0]]), map(&[[1.0, 1.0], [1.0, 3.0]])];
+    assert_eq!(length(&cover, &maps, [0, 1]), Some(5.0));
+    assert_eq!(length(&cover, &maps, [1, 2]), Some(5.0));
+    assert_eq!(length(&cover, &maps, [2, 3]), Some(2.0));
+    assert_eq!(length(&cover, &maps, [0, 3]), None);
+    // With 0 in the second region as well, both tell: 10 and 4.
+    let cover = RegionCover::of_members(4, &[&[0, 1, 2], &[0, 2, 3]]);
+    let maps = [maps[0].clone(), map(&[[1.0, 5.0], [1.0, 1.0], [1.0, 3.0]])];
+    assert_eq!(length(&cover, &maps, [0, 2]), Some(7.0));
+}
+
+#[test]
+fn a_map_follows_other_distances_of_its_links() {
+    let truth = scattered(40, [1.5, 1.5], 8);
+    let graph = exact_links(&truth, 1.1);
+    let map = solve(&graph, &whole(&graph), TO_THE_END).unwrap();
+    let longer = graph.to_pairs_with(|i, j| (1.25 * distance(truth[i as usize], truth[j as usize]), 1.0));
+    let map = solve_again(&longer, &map, TO_THE_END).unwrap();
+    let stretched: Vec<Point> = truth.iter().map(|point| point.map(|x| 1.25 * x)).collect();
+    assert!(worst_distance(&map, &stretched) < 1e-3, "{}", worst_distance(&map, &stretched));
+}

@@ -130,3 +130,48 @@ fn the_same_bits_on_one_thread_and_on_three() {
     let run = |threads| on_threads(threads, || stitch(&graph, &cover, &maps).unwrap().points);
     assert_eq!(run(1), run(3));
 }
+
+/// A cover of a room with noisy local maps.
+fn room() -> (LinkGraph, RegionCover, Vec<LocalMap>) {
+    let truth = scattered(400, [6.0, 6.0], 5);
+    let graph = exact_links(&truth, 1.1);
+    let cover = RegionCover::new(&graph, RegionParams::default());
+    let maps = local_maps(&truth, &cover, 0.03, 6);
+    (graph, cover, maps)
+}
+
+#[test]
+fn by_the_sides_that_it_finds_stitching_gives_its_own_map() {
+    let (graph, cover, maps) = room();
+    let found = sides(&graph, &cover, &maps, |_, _| 0.0).unwrap();
+    assert!(found.contains(&true) && found.contains(&false));
+    let opposite: Vec<bool> = found.iter().map(|side| !side).collect();
+    let wanted = stitch(&graph, &cover, &maps).unwrap();
+    for known in [found, opposite] {
+        let stitched = stitch_by_sides(&graph, &cover, &maps, &known).unwrap();
+        assert!(rmse(&stitched.points, &wanted.points) < 1e-6);
+        assert_eq!(
+            (stitched.branch_of, &stitched.seams.hinges),
+            (wanted.branch_of.clone(), &wanted.seams.hinges)
+        );
+    }
+}
+
+#[test]
+fn what_is_known_besides_outweighs_seams() {
+    let (graph, cover, maps) = room();
+    let found = sides(&graph, &cover, &maps, |_, _| 0.0).unwrap();
+    // Region 3 is said to lie the other way round.
+    let said = |a: u32, b: u32| {
+        let equal = (found[a as usize] == found[b as usize]) != (a == 3 || b == 3);
+        if equal { 1e4 } else { -1e4 }
+    };
+    let sides = sides(&graph, &cover, &maps, said).unwrap();
+    let changed: Vec<usize> =
+        (0..maps.len()).filter(|&r| (sides[r] != found[r]) != (sides[0] != found[0])).collect();
+    assert_eq!(changed, [3]);
+    // The seams of that region are used against their evidence.
+    let forced = stitch_by_sides(&graph, &cover, &maps, &sides).unwrap().seams;
+    let against = |seam: &crate::SeamReport| seam.evidence < 0.0 && seam.regions.contains(&3);
+    assert!(forced.hinges.iter().any(|hinge| against(&hinge.seam)) || forced.dropped.iter().any(against));
+}
