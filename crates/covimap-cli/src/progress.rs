@@ -199,6 +199,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::Regions => "regions",
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
+        Stage::Variants => "variants",
         Stage::Polish => "polish",
         Stage::Distances => "distances",
         Stage::Refine => "refine",
@@ -214,11 +215,12 @@ fn unit(stage: Stage) -> &'static str {
     match stage {
         Stage::Read => BYTES,
         Stage::Count => "landmarks",
-        Stage::Regions | Stage::LocalMaps => "regions",
+        Stage::LocalMaps => "regions",
+        Stage::Variants => "regions and pieces",
         Stage::Refine => "iterations at most",
         Stage::Sensor => "components",
         Stage::Distances | Stage::Polish => "steps at most",
-        Stage::Stitch | Stage::Classical => "steps",
+        Stage::Regions | Stage::Stitch | Stage::Classical => "steps",
     }
 }
 

@@ -49,6 +49,8 @@ const NEGLIGIBLE: f64 = 1e-6;
 const WORTHWHILE: f64 = 1e-2;
 /// Lines about which is mirrored, evenly turned.
 const LINES: usize = 4;
+/// Objects for each seed that is tried at most, the others being left: where all is strained, nothing is unusual.
+const MOST_SEEDS: usize = 50;
 /// Times that the surroundings of what changed are looked at again.
 const ROUNDS: usize = 3;
 
@@ -83,6 +85,7 @@ pub fn unfold(pairs: &PairDistances, points: &[Point]) -> Result<Unfolded, Embed
             .filter(|&object| looked_at[object as usize] && strains[object as usize] > unusual)
             .collect();
         seeds.sort_by(|&a, &b| strains[b as usize].total_cmp(&strains[a as usize]).then(a.cmp(&b)));
+        seeds.truncate(points.len().div_ceil(MOST_SEEDS));
         looked_at.fill(false);
         if !pass(pairs, &incidence, &mut unfolded, seeds, &mut looked_at) {
             break;

@@ -16,7 +16,7 @@ use crate::component::begin;
 use crate::distances::{Distances, Law};
 use crate::local_map::{self, LocalMap};
 use crate::stitch::{Stitched, stitch};
-use crate::{AutoParams, LinkGraph, MapError, Observer, Region, RegionCover, RegionParams, Stage, variants};
+use crate::{AutoParams, LinkGraph, MapError, Observer, Region, RegionCover, Silent, Stage, variants};
 
 /// Steps by which a local map follows the law.
 const FOLLOWING: StopRule = StopRule { max_iterations: 30, tolerance: 1e-6 };
@@ -43,49 +43,44 @@ pub(crate) struct Ground<'a> {
 /// Lays a connected graph out.
 pub(crate) fn lay_out(ground: &Ground) -> Result<Layout, MapError> {
     let Ground { graph, params, observer, .. } = *ground;
-    begin(Stage::Regions, None, observer)?;
-    let mut cover = RegionCover::new(graph, params.regions);
+    begin(Stage::Regions, Some(2 * graph.landmarks() as u64), observer)?;
+    let mut cover = RegionCover::watched(graph, params.regions, observer);
     observer.finished(Stage::Regions);
 
     begin(Stage::LocalMaps, Some(cover.regions().len() as u64), observer)?;
-    let mut maps = ground.local_maps(&cover)?;
+    let mut maps = ground.local_maps(&cover, None)?;
     let law = ground.law(&params.distance.families(), &cover, &maps);
     if let Some(law) = &law {
         maps = ground.followed(law, cover.regions(), maps)?;
     }
     observer.finished(Stage::LocalMaps);
 
-    begin(Stage::Stitch, None, observer)?;
-    let mut stitched = stitch(graph, &cover, &maps)?;
+    begin(Stage::Stitch, Some(2 * maps.len() as u64), observer)?;
+    let mut stitched = stitch(graph, &cover, &maps, observer)?;
     let hinged = cover.widen(graph, &stitched.seams.hinges, params.regions);
     if !hinged.is_empty() {
         let wider = hinged.par_iter().map(|&region| ground.solved(law.as_ref(), &cover.regions()[region]));
         let wider: Vec<LocalMap> = wider.collect::<Result<_, _>>()?;
         hinged.iter().zip(wider).for_each(|(&region, map)| maps[region] = map);
-        stitched = stitch(graph, &cover, &maps)?;
+        stitched = stitch(graph, &cover, &maps, observer)?;
     }
+    observer.finished(Stage::Stitch);
     if let (Some(law), true) = (&law, stitched.seams.hinges.len() * BORNE > graph.landmarks()) {
         stitched = variants::least_stressed(ground, law, &cover, &maps, stitched)?;
     }
-    observer.finished(Stage::Stitch);
     Ok(Layout { cover, stitched, law })
 }
 
 impl Ground<'_> {
-    /// The map of every region of another cover, stitched.
-    pub fn laid_out_by(&self, law: &Law, sizes: RegionParams) -> Result<Vec<Point>, MapError> {
-        let cover = RegionCover::new(self.graph, sizes);
-        let maps: Vec<LocalMap> = cover
-            .regions()
-            .par_iter()
-            .map(|region| self.solved(Some(law), region))
-            .collect::<Result<_, _>>()?;
-        Ok(stitch(self.graph, &cover, &maps)?.points)
+    /// The maps of the regions of another cover, stitched; tells of every region.
+    pub fn laid_out_by(&self, law: &Law, cover: &RegionCover) -> Result<Vec<Point>, MapError> {
+        let maps = self.local_maps(cover, Some(law))?;
+        Ok(stitch(self.graph, cover, &maps, &Silent)?.points)
     }
 
-    fn local_maps(&self, cover: &RegionCover) -> Result<Vec<LocalMap>, MapError> {
+    fn local_maps(&self, cover: &RegionCover, law: Option<&Law>) -> Result<Vec<LocalMap>, MapError> {
         let solve = |region: &Region| {
-            let map = self.solved(None, region)?;
+            let map = self.solved(law, region)?;
             self.observer.advanced(1);
             Ok(map)
         };

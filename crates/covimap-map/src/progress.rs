@@ -7,12 +7,14 @@ pub enum Stage {
     Read,
     /// Counting sightings and co-sightings; counted in landmarks.
     Count,
-    /// Cutting the graph into overlapping regions.
+    /// Cutting the graph into overlapping regions; counted in steps, two a landmark.
     Regions,
     /// Solving each region; counted in regions.
     LocalMaps,
-    /// Bringing the local maps into one frame.
+    /// Bringing the local maps into one frame; counted in steps, two a region.
     Stitch,
+    /// Other layouts where hinges are many; counted in regions and in polishes of pieces.
+    Variants,
     /// Least stress over all links; counted in steps.
     Polish,
     /// Learning the distance function, and least stress again; counted in steps.

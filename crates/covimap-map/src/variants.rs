@@ -19,11 +19,12 @@
 use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
 use rayon::prelude::*;
 
+use crate::component::begin;
 use crate::distances::Law;
 use crate::layout::Ground;
 use crate::local_map::LocalMap;
 use crate::stitch::{Stitched, sides, stitch_by_sides};
-use crate::{MapError, Region, RegionCover, RegionParams};
+use crate::{MapError, Region, RegionCover, RegionParams, Stage};
 
 /// Landmarks in the cores of the other covers.
 const CORES: [usize; 2] = [25, 50];
@@ -47,20 +48,25 @@ pub(crate) fn least_stressed(
     maps: &[LocalMap],
     first: Stitched,
 ) -> Result<Stitched, MapError> {
-    let sizes = ground.params.regions;
+    let cut = |core, members| {
+        RegionCover::new(ground.graph, RegionParams { core, members, ..ground.params.regions })
+    };
+    let covers = CORES.map(|core| cut(core, MEMBERS * core));
+    let pieces = cut(PIECE[0], PIECE[1]);
+    let polishes = (covers.len() + 1) * pieces.regions().len();
+    let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
+    begin(Stage::Variants, Some((regions + polishes) as u64), ground.observer)?;
     let mut layouts = vec![first.points];
-    for core in CORES {
-        let sizes = RegionParams { core, members: MEMBERS * core, ..sizes };
-        layouts.push(ground.laid_out_by(law, sizes)?);
+    for cover in &covers {
+        layouts.push(ground.laid_out_by(law, cover)?);
     }
-    let [core, members] = PIECE;
-    let pieces = RegionCover::new(ground.graph, RegionParams { core, members, ..sizes });
     let best = |piece: &Region| best_map(ground, law, piece, &layouts);
     let best: Vec<LocalMap> = pieces.regions().par_iter().map(best).collect::<Result<_, _>>()?;
     let lie = Lie::of(cover, maps, &pieces, &best);
     let mirrored = sides(ground.graph, cover, maps, |a, b| lie.votes(a, b))?;
     let of_pieces = lie.pieces_by(cover, &mirrored, best.len());
     let points = stitch_by_sides(ground.graph, &pieces, &best, &of_pieces)?.points;
+    ground.observer.finished(Stage::Variants);
     Ok(Stitched { points, ..stitch_by_sides(ground.graph, cover, maps, &mirrored)? })
 }
 
@@ -135,6 +141,7 @@ fn best_map(
         }
         let start: Vec<Point> = piece.members.iter().map(|&member| layout[member as usize]).collect();
         let map = newton.minimise(&pairs, &start, POLISH, || true)?;
+        ground.observer.advanced(1);
         if best.as_ref().is_none_or(|best| map.stress1 < best.stress1) {
             best = Some(LocalMap { points: map.points, stress1: map.stress1 });
         }

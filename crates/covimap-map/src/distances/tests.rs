@@ -195,3 +195,13 @@ fn logs_that_teach_nothing_keep_the_logarithm() {
         |name: &str| map.landmarks()[map.names().iter().position(|other| other == name).unwrap()].position;
     assert!(distance(place("twin"), place("7")) < 0.1);
 }
+
+#[test]
+fn pairs_that_no_map_tells_of_are_left_out_of_the_sample() {
+    let block = |together| [PairCount { together, either: 9 }; 16];
+    let sample = Sample::of_blocks(vec![block(1), block(2), block(3)]);
+    let (told, lengths) = sample.told(&[Some(0.5), None, Some(0.25)]);
+    assert_eq!((told.links.as_slice(), lengths), (&[0, 2][..], vec![0.5, 0.25]));
+    let together: Vec<f64> = told.half(&[0.5, 0.25], false).iter().map(|seen| seen.together).collect();
+    assert_eq!(together, [8.0, 24.0]);
+}

@@ -17,7 +17,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::{LinkGraph, RegionParams};
+use crate::{LinkGraph, Observer, RegionParams};
 
 const UNCLAIMED: u32 = u32::MAX;
 /// Rounds of rounding; further ones change little.
@@ -31,9 +31,9 @@ fn key(distance: f64, landmark: u32) -> Key {
 }
 
 /// The cell of each landmark of a connected graph, cells numbered by their first landmark.
-pub(super) fn grow(graph: &LinkGraph, sizes: RegionParams) -> Vec<u32> {
+pub(super) fn grow(graph: &LinkGraph, sizes: RegionParams, observer: &dyn Observer) -> Vec<u32> {
     let most = sizes.members / 2;
-    let mut cell_of = grow_cells(graph, sizes.core);
+    let mut cell_of = grow_cells(graph, sizes.core, observer);
     merge_small(graph, &mut cell_of, sizes.core, most);
     for _ in 0..ROUNDINGS {
         let rounded = nearest_seed(graph, &central_landmarks(graph, &cell_of));
@@ -43,10 +43,11 @@ pub(super) fn grow(graph: &LinkGraph, sizes: RegionParams) -> Vec<u32> {
         cell_of = rounded;
     }
     number_by_first(&mut cell_of);
+    observer.advanced(cell_of.len() as u64);
     cell_of
 }
 
-fn grow_cells(graph: &LinkGraph, size: usize) -> Vec<u32> {
+fn grow_cells(graph: &LinkGraph, size: usize, observer: &dyn Observer) -> Vec<u32> {
     let n = graph.landmarks();
     let mut cell_of = vec![UNCLAIMED; n];
     let mut distance = vec![f64::INFINITY; n];
@@ -84,6 +85,7 @@ fn grow_cells(graph: &LinkGraph, size: usize) -> Vec<u32> {
             distance[landmark as usize] = f64::INFINITY;
         }
         cells += 1;
+        observer.advanced(claimed as u64);
     }
     cell_of
 }

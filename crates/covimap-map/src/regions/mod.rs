@@ -8,7 +8,7 @@
 mod cores;
 mod halo;
 
-use crate::{Hinge, LinkGraph, RegionParams};
+use crate::{Hinge, LinkGraph, Observer, RegionParams, Silent};
 
 /// One region of a cover.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,8 +29,13 @@ pub struct RegionCover {
 impl RegionCover {
     /// Covers a connected graph. A graph of at most `sizes.members` landmarks is one region.
     pub(crate) fn new(graph: &LinkGraph, sizes: RegionParams) -> Self {
+        Self::watched(graph, sizes, &Silent)
+    }
+
+    /// The same, telling of every landmark twice.
+    pub(crate) fn watched(graph: &LinkGraph, sizes: RegionParams, observer: &dyn Observer) -> Self {
         let n = graph.landmarks();
-        let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes) };
+        let core_of = if n <= sizes.members { vec![0; n] } else { cores::grow(graph, sizes, observer) };
         let regions = halo::add(graph, &core_of, sizes);
         let cover = Self { regions, core_of };
         #[cfg(test)]

@@ -20,7 +20,7 @@ use covimap_embed::{
     Estimate, Point, RelativeFrame, Similarity, SynchroniseOptions, Synchronised, synchronise,
 };
 
-use crate::{LinkGraph, LocalMap, MapError, RegionCover, SeamsReport};
+use crate::{LinkGraph, LocalMap, MapError, Observer, RegionCover, SeamsReport, Silent};
 pub(crate) use branches::SURE;
 use seams::Seam;
 pub(crate) use seams::flatness;
@@ -43,14 +43,16 @@ pub(crate) struct Stitched {
     pub seams: SeamsReport,
 }
 
-/// Puts the maps of the regions of a connected graph together.
+/// Puts the maps of the regions of a connected graph together, and tells of every region twice.
 pub(crate) fn stitch(
     graph: &LinkGraph,
     cover: &RegionCover,
     maps: &[LocalMap],
+    observer: &dyn Observer,
 ) -> Result<Stitched, MapError> {
-    let seams = seams::find(graph, cover, maps);
+    let seams = seams::find(graph, cover, maps, observer);
     let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
+    observer.advanced(maps.len() as u64);
     let used: Vec<usize> =
         seams.iter().zip(&synchronised.edges).map(|(seam, edge)| seam.fit_of(edge.used)).collect();
     Ok(joined(graph, cover, maps, &seams, &used, &synchronised))
@@ -64,7 +66,7 @@ pub(crate) fn sides(
     maps: &[LocalMap],
     more: impl Fn(u32, u32) -> f64,
 ) -> Result<Vec<bool>, MapError> {
-    let mut seams = seams::find(graph, cover, maps);
+    let mut seams = seams::find(graph, cover, maps, &Silent);
     seams.iter_mut().for_each(|seam| seam.evidence += more(seam.a, seam.b));
     let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
     Ok(synchronised.global_from_node.iter().map(|frame| frame.mirrored).collect())
@@ -77,7 +79,7 @@ pub(crate) fn stitch_by_sides(
     maps: &[LocalMap],
     mirrored: &[bool],
 ) -> Result<Stitched, MapError> {
-    let seams = seams::find(graph, cover, maps);
+    let seams = seams::find(graph, cover, maps, &Silent);
     let used = |seam: &Seam| usize::from(mirrored[seam.a as usize] != mirrored[seam.b as usize]);
     let used: Vec<usize> = seams.iter().map(used).collect();
     let edges: Vec<RelativeFrame> =

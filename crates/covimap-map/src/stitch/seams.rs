@@ -15,7 +15,7 @@
 use covimap_embed::{Correspondence, Estimate, Point, ProcrustesOptions, Reflection, Similarity, procrustes};
 use rayon::prelude::*;
 
-use crate::{LinkGraph, LocalMap, RegionCover};
+use crate::{LinkGraph, LocalMap, Observer, RegionCover};
 
 /// Least error of a position in a local map, in map units: misfits below it say nothing.
 const LEAST_ERROR: f64 = 0.02;
@@ -51,7 +51,12 @@ impl Seam {
 type Places = Vec<Vec<(u32, u32)>>;
 
 /// The seams of all pairs of regions that share enough landmarks, ascending.
-pub(super) fn find(graph: &LinkGraph, cover: &RegionCover, maps: &[LocalMap]) -> Vec<Seam> {
+pub(super) fn find(
+    graph: &LinkGraph,
+    cover: &RegionCover,
+    maps: &[LocalMap],
+    observer: &dyn Observer,
+) -> Vec<Seam> {
     let places = places(graph.landmarks(), cover);
     (0..maps.len() as u32)
         .into_par_iter()
@@ -62,6 +67,7 @@ pub(super) fn find(graph: &LinkGraph, cover: &RegionCover, maps: &[LocalMap]) ->
                 .filter(|shared| shared.len() >= LEAST_SHARED)
                 .filter_map(|shared| seam(graph, cover, maps, a, shared))
                 .collect();
+            observer.advanced(1);
             seams
         })
         .collect()

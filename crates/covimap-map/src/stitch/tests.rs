@@ -4,8 +4,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::RegionParams;
 use crate::fixtures::{cases, exact_links, on_threads, scattered};
+use crate::{RegionParams, Silent};
 
 /// Turns, shifts and, half of the time, mirrors a point set; the same for all of its points.
 fn moved(points: Vec<Point>, rng: &mut ChaCha8Rng) -> LocalMap {
@@ -37,7 +37,7 @@ fn rmse(points: &[Point], truth: &[Point]) -> f64 {
 fn stitched(truth: &[Point], reach: f64, noise: f64, seed: u64) -> f64 {
     let graph = exact_links(truth, reach);
     let cover = RegionCover::new(&graph, RegionParams::default());
-    rmse(&stitch(&graph, &cover, &local_maps(truth, &cover, noise, seed)).unwrap().points, truth)
+    rmse(&stitch(&graph, &cover, &local_maps(truth, &cover, noise, seed), &Silent).unwrap().points, truth)
 }
 
 proptest! {
@@ -67,7 +67,7 @@ fn a_single_region_keeps_its_map() {
     let graph = exact_links(&truth, 1.1);
     let cover = RegionCover::new(&graph, RegionParams::default());
     let maps = local_maps(&truth, &cover, 0.0, 4);
-    assert_eq!(stitch(&graph, &cover, &maps).unwrap().points, maps[0].points);
+    assert_eq!(stitch(&graph, &cover, &maps, &Silent).unwrap().points, maps[0].points);
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn links_through_a_door_decide_which_side_is_which() {
         let (truth, graph) = rooms_with_a_door(seed);
         let cover = RegionCover::new(&graph, RegionParams::default());
         let maps = local_maps(&truth, &cover, 0.02, seed);
-        let rmse = rmse(&stitch(&graph, &cover, &maps).unwrap().points, &truth);
+        let rmse = rmse(&stitch(&graph, &cover, &maps, &Silent).unwrap().points, &truth);
         // Folded over at the door the rooms would lie on each other, metres from where they belong.
         assert!(rmse < 0.15, "seed {seed}: {rmse}");
     }
@@ -127,7 +127,7 @@ fn the_same_bits_on_one_thread_and_on_three() {
     let graph = exact_links(&truth, 1.1);
     let cover = RegionCover::new(&graph, RegionParams::default());
     let maps = local_maps(&truth, &cover, 0.03, 2);
-    let run = |threads| on_threads(threads, || stitch(&graph, &cover, &maps).unwrap().points);
+    let run = |threads| on_threads(threads, || stitch(&graph, &cover, &maps, &Silent).unwrap().points);
     assert_eq!(run(1), run(3));
 }
 
@@ -146,7 +146,7 @@ fn by_the_sides_that_it_finds_stitching_gives_its_own_map() {
     let found = sides(&graph, &cover, &maps, |_, _| 0.0).unwrap();
     assert!(found.contains(&true) && found.contains(&false));
     let opposite: Vec<bool> = found.iter().map(|side| !side).collect();
-    let wanted = stitch(&graph, &cover, &maps).unwrap();
+    let wanted = stitch(&graph, &cover, &maps, &Silent).unwrap();
     for known in [found, opposite] {
         let stitched = stitch_by_sides(&graph, &cover, &maps, &known).unwrap();
         assert!(rmse(&stitched.points, &wanted.points) < 1e-6);

@@ -27,7 +27,7 @@ fn evidence_computed_by_hand() {
     let truth = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.6], [0.5, 1.0]];
     let linked = |i: usize, j: usize| (i, j) != (0, 1);
     let (graph, cover, maps) = pair(&truth, [&[0, 1, 2], &[0, 1, 3]], linked, false);
-    let seams = find(&graph, &cover, &maps);
+    let seams = find(&graph, &cover, &maps, &crate::Silent);
     assert_eq!(seams.len(), 1);
     let seam = &seams[0];
     assert_eq!((seam.a, seam.b, seam.shared), (0, 1, 2));
@@ -44,14 +44,14 @@ fn a_mirrored_map_is_told_by_the_sign_of_the_evidence() {
     let members: [&[u32]; 2] = [&[0, 1, 2], &[0, 1, 3]];
     let evidence = |mirrored, linked: fn(usize, usize) -> bool| {
         let (graph, cover, maps) = pair(&truth, members, linked, mirrored);
-        find(&graph, &cover, &maps)[0].evidence
+        find(&graph, &cover, &maps, &crate::Silent)[0].evidence
     };
     assert_eq!(evidence(true, |i, j| (i, j) != (0, 1)), -evidence(false, |i, j| (i, j) != (0, 1)));
     // Two shared landmarks alone tell nothing.
     assert!(evidence(false, |i, j| (i, j) != (0, 1) && (i, j) != (2, 3)).abs() < 1e-9);
     // Three shared ones do, without any link across.
     let (graph, cover, maps) = pair(&truth, [&[0, 1, 2], &[0, 1, 2, 3]], |_, j| j == 3, true);
-    assert!(find(&graph, &cover, &maps)[0].evidence < -5.0);
+    assert!(find(&graph, &cover, &maps, &crate::Silent)[0].evidence < -5.0);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn regions_that_share_fewer_than_two_landmarks_have_no_seam() {
     let truth = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.6], [0.5, 1.0]];
     for members in [[&[0, 1][..], &[2, 3][..]], [&[0, 1], &[1, 2, 3]]] {
         let (graph, cover, maps) = pair(&truth, members, |_, _| true, false);
-        assert!(find(&graph, &cover, &maps).is_empty());
+        assert!(find(&graph, &cover, &maps, &crate::Silent).is_empty());
     }
 }
 
@@ -67,7 +67,7 @@ fn regions_that_share_fewer_than_two_landmarks_have_no_seam() {
 fn shared_landmarks_in_one_place_fix_no_turn() {
     let truth = [[1.0, 1.0], [1.0, 1.0], [0.5, 0.6], [0.5, 1.0]];
     let (graph, cover, maps) = pair(&truth, [&[0, 1, 2], &[0, 1, 3]], |i, _| i == 0, false);
-    assert!(find(&graph, &cover, &maps).is_empty());
+    assert!(find(&graph, &cover, &maps, &crate::Silent).is_empty());
 }
 
 #[test]
