@@ -49,8 +49,11 @@ const NEGLIGIBLE: f64 = 1e-6;
 const WORTHWHILE: f64 = 1e-2;
 /// Lines about which is mirrored, evenly turned.
 const LINES: usize = 4;
-/// Objects for each seed that is tried at most, the others being left: where all is strained, nothing is unusual.
-const MOST_SEEDS: usize = 50;
+/// Most seeds, the worst: one for so many objects, if that is more than [`ALWAYS`]. Where all is strained, nothing is
+/// unusual.
+const OBJECTS_A_SEED: usize = 50;
+/// See [`OBJECTS_A_SEED`].
+const ALWAYS: usize = 1000;
 /// Times that the surroundings of what changed are looked at again.
 const ROUNDS: usize = 3;
 
@@ -85,7 +88,7 @@ pub fn unfold(pairs: &PairDistances, points: &[Point]) -> Result<Unfolded, Embed
             .filter(|&object| looked_at[object as usize] && strains[object as usize] > unusual)
             .collect();
         seeds.sort_by(|&a, &b| strains[b as usize].total_cmp(&strains[a as usize]).then(a.cmp(&b)));
-        seeds.truncate(points.len().div_ceil(MOST_SEEDS));
+        seeds.truncate((points.len() / OBJECTS_A_SEED).max(ALWAYS));
         looked_at.fill(false);
         if !pass(pairs, &incidence, &mut unfolded, seeds, &mut looked_at) {
             break;
