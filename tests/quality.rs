@@ -183,7 +183,7 @@ fn maps_after_updates_are_about_as_good_as_those_of_the_whole_log() {
         let run = Run::new(floor, landmarks, seed, "L");
         let full = build(&run.log(), MapperParams::default());
         let wanted = run.errors_of(&full);
-        // Worst: 1.026, 1.085, 1.06, 1.04, 1.05; all of them 1 where the last piece leads to a whole solution.
+        // Worst: 1.026, 1.04, 1.06, 1.00, 1.01; all of them 1 where the last piece leads to a whole solution.
         for (first, pieces) in [(0.5, 5), (0.93, 6)] {
             let cut = (run.steps.len() as f64 * first) as usize;
             let log = SightingLog::from_steps(&run.steps[..cut]);
@@ -202,7 +202,7 @@ fn maps_after_updates_are_about_as_good_as_those_of_the_whole_log() {
                 found.orientation_error.unwrap() / wanted.orientation_error.unwrap(),
                 found.rmse / wanted.rmse,
             ];
-            for (ratio, bound) in ratios.into_iter().zip([1.035, 1.11, 1.1, 1.1, 1.1]) {
+            for (ratio, bound) in ratios.into_iter().zip([1.035, 1.08, 1.1, 1.1, 1.1]) {
                 assert!(ratio < bound, "{world}: {ratios:.3?}");
             }
         }

@@ -41,7 +41,7 @@ mod patch;
 use patch::Patch;
 
 /// Strain, over the median, from which on an object is a seed.
-const UNUSUAL: f64 = 2.5;
+const UNUSUAL: f64 = 1.8;
 /// Strain below which no place is looked at: distances are off by a thousandth.
 const NEGLIGIBLE: f64 = 1e-6;
 /// Share of the stress of its surroundings that a mirrored place must save. Distances that are a little wrong make
@@ -49,11 +49,6 @@ const NEGLIGIBLE: f64 = 1e-6;
 const WORTHWHILE: f64 = 1e-2;
 /// Lines about which is mirrored, evenly turned.
 const LINES: usize = 4;
-/// Most seeds, the worst: one for so many objects, if that is more than [`ALWAYS`]. Where all is strained, nothing is
-/// unusual.
-const OBJECTS_A_SEED: usize = 50;
-/// See [`OBJECTS_A_SEED`].
-const ALWAYS: usize = 1000;
 /// Times that the surroundings of what changed are looked at again.
 const ROUNDS: usize = 3;
 
@@ -88,7 +83,6 @@ pub fn unfold(pairs: &PairDistances, points: &[Point]) -> Result<Unfolded, Embed
             .filter(|&object| looked_at[object as usize] && strains[object as usize] > unusual)
             .collect();
         seeds.sort_by(|&a, &b| strains[b as usize].total_cmp(&strains[a as usize]).then(a.cmp(&b)));
-        seeds.truncate((points.len() / OBJECTS_A_SEED).max(ALWAYS));
         looked_at.fill(false);
         if !pass(pairs, &incidence, &mut unfolded, seeds, &mut looked_at) {
             break;

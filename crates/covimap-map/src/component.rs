@@ -1,7 +1,5 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use std::borrow::Cow;
-
 use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
 
 use crate::distances::{self, ComponentSteps, DistanceReport, Distances, Law};
@@ -12,7 +10,7 @@ use crate::stitch::Stitched;
 use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport, Stage};
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
-const ROUGH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-3 };
+const ROUGH: StopRule = StopRule { max_iterations: 20, tolerance: 1e-3 };
 /// The polish from one law to the next.
 const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
 
@@ -67,10 +65,10 @@ pub(crate) fn map_component(
     let fixed = graph.to_pairs();
     let distances = evidence.distances(graph, &fixed, seed);
     let ground = Ground { graph, distances: distances.as_ref(), params, observer };
-    let Layout { cover, stitched, law } = lay_out(&ground)?;
+    let Layout { cover, stitched } = lay_out(&ground)?;
     let shape = Shape::of(graph, &cover, &stitched);
     let Stitched { points, branch_of, seams } = stitched;
-    let start = Start { points, shape, law };
+    let start = Start { points, shape };
     let settled = settle(&ground, &fixed, evidence, start)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
@@ -81,8 +79,6 @@ pub(crate) struct Start {
     /// Positions in map units.
     pub points: Vec<Point>,
     pub shape: Shape,
-    /// What is known of the distance function.
-    pub law: Option<Law>,
 }
 
 impl Evidence<'_> {
@@ -107,7 +103,7 @@ pub(crate) fn settle(
     start: Start,
 ) -> Result<ComponentMap, MapError> {
     let Ground { graph, distances, params, observer } = *ground;
-    let Start { points, shape, law } = start;
+    let Start { points, shape } = start;
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
     let steps = ROUGH.max_iterations + distances::ROUNDS * A_FEW_STEPS.max_iterations;
     begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
@@ -115,15 +111,13 @@ pub(crate) fn settle(
     let terms = shape.terms(fixed)?;
     let mut newton = Newton::new(&terms);
     let learning = distances.filter(|_| !families.is_empty());
-    let mut learnt = None;
+    let mut law = None;
     if let Some(distances) = learning {
-        let first = law.map_or(Cow::Borrowed(fixed), |law| Cow::Owned(distances.undoubted(&law)));
-        start = polish(&mut newton, &first, &start, ROUGH, observer)?.points;
-        start = unfold(&first, &start)?.points;
+        start = polish(&mut newton, fixed, &start, ROUGH, observer)?.points;
+        start = unfold(fixed, &start)?.points;
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
-        (learnt, start) = distances.learn(start, &families, polish)?;
+        (law, start) = distances.learn(start, &families, polish)?;
     }
-    let law = learnt;
     let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
     observer.finished(Stage::Distances);
 

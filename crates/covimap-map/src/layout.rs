@@ -27,8 +27,6 @@ const BORNE: usize = 1000;
 pub(crate) struct Layout {
     pub cover: RegionCover,
     pub stitched: Stitched,
-    /// What the local maps tell of the distance function, if they tell anything.
-    pub law: Option<Law>,
 }
 
 /// What a layout is made from.
@@ -68,7 +66,7 @@ pub(crate) fn lay_out(ground: &Ground) -> Result<Layout, MapError> {
     if let (Some(law), true) = (&law, stitched.seams.hinges.len() * BORNE > graph.landmarks()) {
         stitched = variants::least_stressed(ground, law, &cover, &maps, stitched)?;
     }
-    Ok(Layout { cover, stitched, law })
+    Ok(Layout { cover, stitched })
 }
 
 impl Ground<'_> {

@@ -179,7 +179,7 @@ impl Mapper {
                 let fixed = graph.to_pairs();
                 let distances = evidence.distances(graph, &fixed, *seed);
                 let ground = Ground { graph, distances: distances.as_ref(), params: auto, observer };
-                let start = Start { points: in_map_units(graph, own)?, shape: Shape::FREE, law: None };
+                let start = Start { points: in_map_units(graph, own)?, shape: Shape::FREE };
                 settle(&ground, &fixed, evidence, start)
             }
         };

@@ -1,7 +1,7 @@
 //! The distance function of a log: learnt from the map that it makes.
 //!
 //! Regions need distances before anything is known of the sensor, and take the paper's logarithm. A first curve is fitted to
-//! their local maps, which are stitched and roughly polished under it. That map shows how frequencies really fall with distance. So
+//! their local maps, which are stitched; a rough polish takes the logarithm again. That map shows how frequencies really fall with distance. So
 //! a curve is fitted to it, the map is polished with the distances of that curve, and again:
 //! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
 //!
@@ -182,20 +182,7 @@ impl<'a> Distances<'a> {
         self.has_extent(&curve).then_some(Law { curve, stretch, trust, scores })
     }
 
-    /// Distances and weights of all links under a law, nothing doubted: what is doubted on a map can hide where the
-    /// map is wrong.
-    pub fn undoubted(&self, law: &Law) -> PairDistances {
-        let measure = |(pair, count): (&Pair, &PairCount)| {
-            let (distance, weight, _) = law.measure(*count, f64::INFINITY);
-            Pair { distance, weight, ..*pair }
-        };
-        Self::valid(
-            self.pairs.objects(),
-            self.pairs.pairs().par_iter().zip(&self.counts).map(measure).collect(),
-        )
-    }
-
-    /// The same for the links of `graph` among `members`, numbered by their places in that list; with a map of the
+    /// Distances and weights under a law of the links of `graph` among `members`, numbered by their places in that list; with a map of the
     /// members, what is too long for it is doubted.
     pub fn inside(
         &self,

@@ -129,7 +129,7 @@ fn solve(joined: &Joined, draft: &Draft, core: Vec<u32>, observer: &dyn Observer
     members.dedup();
     let graph = joined.graph.restricted_to(&members);
     let params = &joined.params().auto;
-    let Layout { cover, stitched, .. } =
+    let Layout { cover, stitched } =
         lay_out(&Ground { graph: &graph, distances: None, params, observer: &Quiet(observer) })?;
     Ok(Piece { core, members, points: stitched.points, cover })
 }
