@@ -3,10 +3,12 @@
 use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
 
 use crate::distances::{self, ComponentSteps, DistanceReport, Distances, Law};
-use crate::layout::{Ground, Layout, lay_out};
+use crate::layout::{Layout, lay_out};
 use crate::places::{SeenSets, Sensor, refine};
+use crate::progress::begin;
 use crate::shape::Shape;
 use crate::stitch::Stitched;
+use crate::surveyor::Surveyor;
 use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport, Stage};
 
 /// The polish before anything is learnt of the distances: the first law moves landmarks by more.
@@ -64,12 +66,12 @@ pub(crate) fn map_component(
 ) -> Result<ComponentMap, MapError> {
     let fixed = graph.to_pairs();
     let distances = evidence.distances(graph, &fixed, seed);
-    let ground = Ground { graph, distances: distances.as_ref(), params, observer };
-    let Layout { cover, stitched } = lay_out(&ground)?;
+    let surveyor = Surveyor { graph, distances: distances.as_ref(), params, observer };
+    let Layout { cover, stitched } = lay_out(&surveyor)?;
     let shape = Shape::of(graph, &cover, &stitched);
     let Stitched { points, branch_of, seams } = stitched;
     let start = Start { points, shape };
-    let settled = settle(&ground, &fixed, evidence, start)?;
+    let settled = settle(&surveyor, &fixed, evidence, start)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
 }
@@ -97,12 +99,12 @@ impl Evidence<'_> {
 ///
 /// The distance function is learnt where links alone make the map: path lengths hold with the fixed one.
 pub(crate) fn settle(
-    ground: &Ground,
+    surveyor: &Surveyor,
     fixed: &PairDistances,
     evidence: &Evidence,
     start: Start,
 ) -> Result<ComponentMap, MapError> {
-    let Ground { graph, distances, params, observer } = *ground;
+    let Surveyor { graph, distances, params, observer } = *surveyor;
     let Start { points, shape } = start;
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
     let steps = ROUGH.max_iterations + distances::ROUNDS * A_FEW_STEPS.max_iterations;
@@ -151,12 +153,6 @@ pub(crate) fn settle(
         points,
         basis: Basis { polished: least, law, sensor },
     })
-}
-
-/// Tells the observer of a stage, unless it asks to stop.
-pub(crate) fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
-    observer.started(stage, total);
-    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
 }
 
 /// Least stress over all terms, from a start.

@@ -35,6 +35,7 @@ mod sight_lines;
 mod sightings;
 mod state;
 mod stitch;
+mod surveyor;
 mod truth;
 mod update;
 mod variants;

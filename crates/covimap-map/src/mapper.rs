@@ -7,11 +7,11 @@ use crate::assembly;
 use crate::classical;
 use crate::component::{Basis, ComponentMap, Evidence, Start, map_component, put_in_frame, settle};
 use crate::distances::{ComponentSteps, Membership};
-use crate::layout::Ground;
 use crate::places::SeenSets;
 use crate::ranges;
 use crate::sensing;
 use crate::shape::Shape;
+use crate::surveyor::Surveyor;
 use crate::{
     CoVisibility, GlobalMap, HonestLinks, HonestyReport, LandmarkId, LinkGraph, MapError, MapperParams,
     Method, Observer, Sensing, SightLines, SightingLog,
@@ -178,9 +178,9 @@ impl Mapper {
                 let own: Vec<Point> = evidence.members.iter().map(|&member| all[member as usize]).collect();
                 let fixed = graph.to_pairs();
                 let distances = evidence.distances(graph, &fixed, *seed);
-                let ground = Ground { graph, distances: distances.as_ref(), params: auto, observer };
+                let surveyor = Surveyor { graph, distances: distances.as_ref(), params: auto, observer };
                 let start = Start { points: in_map_units(graph, own)?, shape: Shape::FREE };
-                settle(&ground, &fixed, evidence, start)
+                settle(&surveyor, &fixed, evidence, start)
             }
         };
         let map = |((members, sets), steps): ((&Vec<u32>, &SeenSets), ComponentSteps)| {

@@ -1,5 +1,7 @@
 //! How a caller watches a build, and stops it.
 
+use crate::MapError;
+
 /// The stages of a build, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
@@ -52,3 +54,9 @@ pub trait Observer: Sync {
 pub struct Silent;
 
 impl Observer for Silent {}
+
+/// Tells the observer of a stage, unless it asks to stop.
+pub(crate) fn begin(stage: Stage, total: Option<u64>, observer: &dyn Observer) -> Result<(), MapError> {
+    observer.started(stage, total);
+    if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+}

@@ -19,11 +19,11 @@
 use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
 use rayon::prelude::*;
 
-use crate::component::begin;
 use crate::distances::Law;
-use crate::layout::Ground;
 use crate::local_map::LocalMap;
+use crate::progress::begin;
 use crate::stitch::{Stitched, sides, stitch_by_sides};
+use crate::surveyor::Surveyor;
 use crate::{MapError, Region, RegionCover, RegionParams, Stage};
 
 /// Landmarks in the cores of the other covers.
@@ -42,32 +42,32 @@ const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
 ///
 /// Seams are reported as the regions of `cover` have them, with the sides that they have in the result.
 pub(crate) fn least_stressed(
-    ground: &Ground,
+    surveyor: &Surveyor,
     law: &Law,
     cover: &RegionCover,
     maps: &[LocalMap],
     first: Stitched,
 ) -> Result<Stitched, MapError> {
     let cut = |core, members| {
-        RegionCover::new(ground.graph, RegionParams { core, members, ..ground.params.regions })
+        RegionCover::new(surveyor.graph, RegionParams { core, members, ..surveyor.params.regions })
     };
     let covers = CORES.map(|core| cut(core, MEMBERS * core));
     let pieces = cut(PIECE[0], PIECE[1]);
     let polishes = (covers.len() + 1) * pieces.regions().len();
     let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
-    begin(Stage::Variants, Some((regions + polishes) as u64), ground.observer)?;
+    begin(Stage::Variants, Some((regions + polishes) as u64), surveyor.observer)?;
     let mut layouts = vec![first.points];
     for cover in &covers {
-        layouts.push(ground.laid_out_by(law, cover)?);
+        layouts.push(surveyor.laid_out_by(law, cover)?);
     }
-    let best = |piece: &Region| best_map(ground, law, piece, &layouts);
+    let best = |piece: &Region| best_map(surveyor, law, piece, &layouts);
     let best: Vec<LocalMap> = pieces.regions().par_iter().map(best).collect::<Result<_, _>>()?;
     let lie = Lie::of(cover, maps, &pieces, &best);
-    let mirrored = sides(ground.graph, cover, maps, |a, b| lie.votes(a, b))?;
+    let mirrored = sides(surveyor.graph, cover, maps, |a, b| lie.votes(a, b))?;
     let of_pieces = lie.pieces_by(cover, &mirrored, best.len());
-    let points = stitch_by_sides(ground.graph, &pieces, &best, &of_pieces)?.points;
-    ground.observer.finished(Stage::Variants);
-    Ok(Stitched { points, ..stitch_by_sides(ground.graph, cover, maps, &mirrored)? })
+    let points = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
+    surveyor.observer.finished(Stage::Variants);
+    Ok(Stitched { points, ..stitch_by_sides(surveyor.graph, cover, maps, &mirrored)? })
 }
 
 /// How regions lie in pieces: the pieces that hold the core of each region, ascending, and whether its map lies mirrored in theirs.
@@ -126,22 +126,22 @@ impl Lie {
 
 /// The map of a piece from the layout that leads to the least stress.
 fn best_map(
-    ground: &Ground,
+    surveyor: &Surveyor,
     law: &Law,
     piece: &Region,
     layouts: &[Vec<Point>],
 ) -> Result<LocalMap, MapError> {
-    let distances = ground.distances.expect("who has a law has learnt it (bug in covimap)");
-    let pairs = distances.inside(law, ground.graph, &piece.members, None);
+    let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
+    let pairs = distances.inside(law, surveyor.graph, &piece.members, None);
     let mut newton = Newton::new(&pairs);
     let mut best: Option<LocalMap> = None;
     for layout in layouts {
-        if ground.observer.interrupted() {
+        if surveyor.observer.interrupted() {
             return Err(MapError::Interrupted);
         }
         let start: Vec<Point> = piece.members.iter().map(|&member| layout[member as usize]).collect();
         let map = newton.minimise(&pairs, &start, POLISH, || true)?;
-        ground.observer.advanced(1);
+        surveyor.observer.advanced(1);
         if best.as_ref().is_none_or(|best| map.stress1 < best.stress1) {
             best = Some(LocalMap { points: map.points, stress1: map.stress1 });
         }

@@ -4,8 +4,8 @@ use covimap_embed::Point;
 
 use super::Joined;
 use super::draft::{Draft, NOWHERE};
-use crate::component::begin;
 use crate::places::{Again, Model, SeenSets, refine_some};
+use crate::progress::begin;
 use crate::{LinkGraph, MapError, Observer, Stage};
 
 /// Moves free landmarks to where the log is most likely, and learns how well each is known and how often missed.

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::draft::{Draft, NOWHERE};
 use super::{Joined, MOST_FREE};
-use crate::component::begin;
 use crate::distances::{Law, PairCount};
+use crate::progress::begin;
 use crate::{Link, MapError, Observer, Stage};
 
 /// Times that landmarks are freed because of others, at most.

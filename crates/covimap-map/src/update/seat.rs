@@ -14,8 +14,9 @@ use rayon::prelude::*;
 use super::Joined;
 use super::draft::{Draft, NOWHERE};
 use super::fit::Fit;
-use crate::component::begin;
-use crate::layout::{Ground, Layout, lay_out};
+use crate::layout::{Layout, lay_out};
+use crate::progress::begin;
+use crate::surveyor::Surveyor;
 use crate::{MapError, Observer, RegionCover, Stage};
 
 /// Fewest landmarks of a chart whose frame is worth keeping.
@@ -130,7 +131,7 @@ fn solve(joined: &Joined, draft: &Draft, core: Vec<u32>, observer: &dyn Observer
     let graph = joined.graph.restricted_to(&members);
     let params = &joined.params().auto;
     let Layout { cover, stitched } =
-        lay_out(&Ground { graph: &graph, distances: None, params, observer: &Quiet(observer) })?;
+        lay_out(&Surveyor { graph: &graph, distances: None, params, observer: &Quiet(observer) })?;
     Ok(Piece { core, members, points: stitched.points, cover })
 }
 
