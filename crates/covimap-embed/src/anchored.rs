@@ -9,21 +9,12 @@
 //!
 //! # Complexity
 //! `O(m)` a step for `m` pairs. The number of steps grows with the width of the free part, in links.
-//!
-//! # References
-//! J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., 2006, algorithms 7.4 and 3.1.
 
+use crate::descent::{Descent, Objective, Reached};
 use crate::forces::{Forces, PairLayout};
-use crate::limited_memory::{Memory, dot};
 use crate::solve::{check_start, negligible_stress};
-use crate::{EmbedError, Embedding, PairDistances, Point, StopRule, Termination};
+use crate::{EmbedError, Embedding, PairDistances, Point, StopRule};
 
-/// Steps that the blocks of eq. (1) serve.
-const LIFETIME: usize = 30;
-/// Share of the decrease promised by the slope that a step must keep (Armijo's condition).
-const KEPT: f64 = 1e-4;
-/// Shortenings of a step before it is given up: by then it is below rounding.
-const SHORTENINGS: usize = 20;
 /// Share of its trace that is added to a block: a pair alone says nothing of the direction across it.
 const DAMPING: f64 = 1e-3;
 
@@ -31,7 +22,7 @@ const DAMPING: f64 = 1e-3;
 /// step whether to go on; if not, the result is what was reached, with [`Termination::Interrupted`].
 ///
 /// Objects that are held keep their places to the last bit. Converged is a configuration from which a step
-/// along the plain blocks of eq. (1) gains less than the tolerance.
+/// along the plain blocks of eq. (1), and the next one, gain less than the tolerance.
 ///
 /// # Errors
 /// [`EmbedError::BadStart`] for a start, or a list of those held, that does not fit.
@@ -40,83 +31,42 @@ pub fn anchored_while(
     start: &[Point],
     held: &[bool],
     stop: StopRule,
-    mut go_on: impl FnMut() -> bool,
+    go_on: impl FnMut() -> bool,
 ) -> Result<Embedding, EmbedError> {
     check_start(pairs, start)?;
     if held.len() != start.len() {
         let what = "it must be known of each object whether it is held";
         return Err(EmbedError::BadStart { what, found: held.len(), wanted: start.len() });
     }
-    let problem = Problem::new(pairs, held);
-    let negligible = negligible_stress(pairs);
-    let mut here = problem.at(start.to_vec());
-    let (mut memory, mut blocks, mut age) = (Memory::default(), Vec::new(), LIFETIME);
-    let mut iterations = 0;
-    let termination = loop {
-        if here.stress <= negligible {
-            break Termination::Converged;
-        }
-        if iterations == stop.max_iterations {
-            break Termination::IterationLimit;
-        }
-        if !go_on() {
-            break Termination::Interrupted;
-        }
-        iterations += 1;
-        if age >= LIFETIME {
-            blocks = problem.blocks(&here.points);
-            memory.clear();
-            age = 0;
-        }
-        let downhill = here.gradient.iter().map(|g| -g).collect();
-        let direction = memory.apply(downhill, |v, _| solve_blocks(&blocks, v));
-        let mut gained = 0.0;
-        if let Some((next, step)) = problem.descend(&here, &direction) {
-            gained = here.stress - next.stress;
-            let change = next.gradient.iter().zip(&here.gradient).map(|(a, b)| a - b).collect();
-            memory.remember(step, change);
-            here = next;
-        }
-        age += 1;
-        // That aged blocks gain nothing may be the fault of the blocks.
-        if gained <= stop.tolerance * here.stress {
-            if age <= 1 {
-                break Termination::Converged;
-            }
-            age = LIFETIME;
-        }
-    };
-    Ok(Embedding::of_distances(pairs, here.points, iterations, termination))
+    let distances = pairs.pairs().iter().map(|pair| pair.distance).collect();
+    let mut free = Free { pairs, held, layout: PairLayout::new(pairs), distances, blocks: Vec::new() };
+    let start = start.as_flattened().to_vec();
+    let Reached { x, iterations, termination } =
+        Descent::new().run(&mut free, start, stop, negligible_stress(pairs), go_on)?;
+    Ok(Embedding::of_distances(pairs, x.as_chunks().0.to_vec(), iterations, termination))
 }
 
-struct Problem<'a> {
+/// The stress as a function of the objects that are free, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
+struct Free<'a> {
     pairs: &'a PairDistances,
     held: &'a [bool],
     layout: PairLayout<'a>,
     distances: Vec<f64>,
-}
-
-/// A configuration with its stress and the gradient of half of it, zero where objects are held.
-struct Configuration {
-    points: Vec<Point>,
-    stress: f64,
-    gradient: Vec<f64>,
-}
-
-impl<'a> Problem<'a> {
-    fn new(pairs: &'a PairDistances, held: &'a [bool]) -> Self {
-        let distances = pairs.pairs().iter().map(|pair| pair.distance).collect();
-        Self { pairs, held, layout: PairLayout::new(pairs), distances }
-    }
-
-    fn at(&self, points: Vec<Point>) -> Configuration {
-        let Forces { stress, mut forces } = self.layout.forces(&points, &self.distances);
-        forces.iter_mut().zip(self.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = [0.0; 2]);
-        Configuration { points, stress, gradient: forces.into_flattened() }
-    }
-
     /// Blocks of eq. (1), inverted: xx, xy, yy. Zero for objects that are held or have no pair.
-    fn blocks(&self, points: &[Point]) -> Vec<[f64; 3]> {
+    blocks: Vec<[f64; 3]>,
+}
+
+impl Objective for Free<'_> {
+    const LIFETIME: usize = 30;
+
+    fn at(&self, x: &[f64]) -> (f64, Vec<f64>) {
+        let Forces { stress, mut forces } = self.layout.forces(x.as_chunks().0, &self.distances);
+        forces.iter_mut().zip(self.held).filter(|(_, held)| **held).for_each(|(force, _)| *force = [0.0; 2]);
+        (stress, forces.into_flattened())
+    }
+
+    fn renew(&mut self, x: &[f64]) -> Result<(), EmbedError> {
+        let points: &[Point] = x.as_chunks().0;
         let mut blocks = vec![[0.0; 3]; points.len()];
         for pair in self.pairs.pairs() {
             let (i, j) = (pair.i as usize, pair.j as usize);
@@ -136,27 +86,16 @@ impl<'a> Problem<'a> {
         for (block, &held) in blocks.iter_mut().zip(self.held) {
             *block = if held { [0.0; 3] } else { inverse(*block) };
         }
-        blocks
+        self.blocks = blocks;
+        Ok(())
     }
 
-    /// Goes along a direction as far as the stress falls enough, the whole step if it can. `None` if even a
-    /// step at the edge of rounding does not lower the stress.
-    fn descend(&self, here: &Configuration, direction: &[f64]) -> Option<(Configuration, Vec<f64>)> {
-        // The stress is twice the function whose gradient is held.
-        let slope = 2.0 * dot(direction, &here.gradient);
-        let mut length = 1.0;
-        for _ in 0..SHORTENINGS {
-            let step: Vec<f64> = direction.iter().map(|s| length * s).collect();
-            let moved = |(point, step): (&Point, &[f64])| [point[0] + step[0], point[1] + step[1]];
-            let next = self.at(here.points.iter().zip(step.chunks_exact(2)).map(moved).collect());
-            if next.stress <= here.stress + KEPT * length * slope {
-                return Some((next, step));
-            }
-            // The lowest point of the parabola through what is known.
-            let lowest = -slope * length / (2.0 * (next.stress - here.stress - slope * length));
-            length *= if lowest.is_nan() { 0.1 } else { lowest.clamp(0.1, 0.5) };
+    fn precondition(&self, v: &mut [f64]) {
+        for ([xx, xy, yy], v) in self.blocks.iter().zip(v.chunks_exact_mut(2)) {
+            let [x, y] = [v[0], v[1]];
+            v[0] = xx * x + xy * y;
+            v[1] = xy * x + yy * y;
         }
-        None
     }
 }
 
@@ -166,14 +105,6 @@ fn inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let (xx, yy) = (xx + damping, yy + damping);
     let determinant = xx * yy - xy * xy;
     if determinant > 0.0 { [yy, -xy, xx].map(|entry| entry / determinant) } else { [0.0; 3] }
-}
-
-fn solve_blocks(blocks: &[[f64; 3]], v: &mut [f64]) {
-    for ([xx, xy, yy], v) in blocks.iter().zip(v.chunks_exact_mut(2)) {
-        let [x, y] = [v[0], v[1]];
-        v[0] = xx * x + xy * y;
-        v[1] = xy * x + yy * y;
-    }
 }
 
 #[cfg(test)]

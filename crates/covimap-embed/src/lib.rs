@@ -7,6 +7,7 @@
 mod anchored;
 mod classical;
 mod closure;
+mod descent;
 mod disparity;
 mod distance_function;
 mod distance_rows;

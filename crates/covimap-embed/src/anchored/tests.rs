@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::solve::tests::{TO_THE_END, after, cases, jittered, pairs_within, random_points, random_problem};
 use crate::stress::raw_stress;
-use crate::{Pair, newton};
+use crate::{Pair, Termination, newton};
 
 fn anchored(pairs: &PairDistances, start: &[Point], held: &[bool], stop: StopRule) -> Embedding {
     anchored_while(pairs, start, held, stop, || true).unwrap()

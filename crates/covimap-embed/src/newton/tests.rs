@@ -3,6 +3,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::raw_stress;
 use crate::solve::tests::{TO_THE_END, after, cases, jittered, pairs_within, random_points, random_problem};
 use crate::{Pair, Smacof, Steps, smacof};
 
@@ -11,6 +12,11 @@ fn half_stress(pairs: &PairDistances, points: &[Point], (object, axis): (usize, 
     let mut moved = points.to_vec();
     moved[object][axis] += by;
     raw_stress(pairs, &moved) / 2.0
+}
+
+fn half_gradient(pairs: &PairDistances, points: &[Point]) -> Vec<f64> {
+    let distances: Vec<f64> = pairs.pairs().iter().map(|pair| pair.distance).collect();
+    PairLayout::new(pairs).forces(points, &distances).forces.into_flattened()
 }
 
 /// All coordinates, in the order of the unknowns.
