@@ -72,7 +72,7 @@ impl Factored {
     }
 
     /// As [`Factored::new`], in the form that [`Factored::solve_points`] takes.
-    fn for_points(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+    pub fn for_points(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
         // Any number of operations is above the threshold, zero too.
         Self::with_runs(matrix, SupernodalThreshold(-1.0))
     }
@@ -157,7 +157,7 @@ impl Factored {
     }
 
     /// The solution for a right-hand side of a point a row.
-    fn solve_points(&self, y: &[Point]) -> Vec<Point> {
+    pub fn solve_points(&self, y: &[Point]) -> Vec<Point> {
         let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
             // A matrix of order 0.
             return y.to_vec();

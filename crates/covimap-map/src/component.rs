@@ -66,11 +66,11 @@ pub(crate) fn map_component(
 ) -> Result<ComponentMap, MapError> {
     let fixed = graph.to_pairs();
     let distances = evidence.distances(graph, &fixed, seed);
-    let surveyor = Surveyor { graph, distances: distances.as_ref(), params, observer };
-    let Layout { cover, stitched } = lay_out(&surveyor)?;
+    let surveyor = Surveyor { graph, distances: distances.as_ref(), params, seed, observer };
+    let Layout { cover, stitched, untwisted } = lay_out(&surveyor)?;
     let shape = Shape::of(graph, &cover, &stitched);
     let Stitched { points, branch_of, seams } = stitched;
-    let start = Start { points, shape };
+    let start = Start { points, shape, untwisted };
     let settled = settle(&surveyor, &fixed, evidence, start)?;
     let (region, regions) = (cover.core_of().to_vec(), cover.regions().len());
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
@@ -81,6 +81,8 @@ pub(crate) struct Start {
     /// Positions in map units.
     pub points: Vec<Point>,
     pub shape: Shape,
+    /// Whether folds were taken out under a learnt law.
+    pub untwisted: bool,
 }
 
 impl Evidence<'_> {
@@ -104,10 +106,11 @@ pub(crate) fn settle(
     evidence: &Evidence,
     start: Start,
 ) -> Result<ComponentMap, MapError> {
-    let Surveyor { graph, distances, params, observer } = *surveyor;
-    let Start { points, shape } = start;
+    let Surveyor { graph, distances, params, observer, .. } = *surveyor;
+    let Start { points, shape, untwisted } = start;
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
-    let steps = ROUGH.max_iterations + distances::ROUNDS * A_FEW_STEPS.max_iterations;
+    let rough = if untwisted { 0 } else { ROUGH.max_iterations };
+    let steps = rough + distances::ROUNDS * A_FEW_STEPS.max_iterations;
     begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
     let mut start = shape.start(fixed, points)?;
     let terms = shape.terms(fixed)?;
@@ -115,12 +118,14 @@ pub(crate) fn settle(
     let learning = distances.filter(|_| !families.is_empty());
     let mut law = None;
     if let Some(distances) = learning {
-        start = polish(&mut newton, fixed, &start, ROUGH, observer)?.points;
-        start = unfold(fixed, &start)?.points;
+        if !untwisted {
+            start = polish(&mut newton, fixed, &start, ROUGH, observer)?.points;
+            start = unfold(fixed, &start)?.points;
+        }
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
         (law, start) = distances.learn(start, &families, polish)?;
     }
-    let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, &start));
+    let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, Some(&start)));
     observer.finished(Stage::Distances);
 
     begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;

@@ -24,6 +24,8 @@ const BORNE: usize = 1000;
 pub(crate) struct Layout {
     pub cover: RegionCover,
     pub stitched: Stitched,
+    /// Whether twists were looked for, and taken out.
+    pub untwisted: bool,
 }
 
 /// Lays a connected graph out.
@@ -51,8 +53,9 @@ pub(crate) fn lay_out(surveyor: &Surveyor) -> Result<Layout, MapError> {
         stitched = stitch(graph, &cover, &maps, observer)?;
     }
     observer.finished(Stage::Stitch);
-    if let (Some(law), true) = (&law, stitched.seams.hinges.len() * BORNE > graph.landmarks()) {
+    let law = law.filter(|_| stitched.seams.hinges.len() * BORNE > graph.landmarks());
+    if let Some(law) = &law {
         stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched)?;
     }
-    Ok(Layout { cover, stitched })
+    Ok(Layout { cover, stitched, untwisted: law.is_some() })
 }

@@ -17,6 +17,8 @@ pub(crate) struct Surveyor<'a> {
     /// What a law can be learnt from; `None` for the fixed logarithm.
     pub distances: Option<&'a Distances<'a>>,
     pub params: &'a AutoParams,
+    /// Seed of all chances.
+    pub seed: u64,
     pub observer: &'a dyn Observer,
 }
 

@@ -16,10 +16,12 @@
 //! # Complexity
 //! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size.
 
-use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
+use covimap_embed::{
+    Correspondence, LIFT_STEPS, Newton, PairDistances, Point, ProcrustesOptions, Reflection, StopRule, lift, procrustes,
+};
 use rayon::prelude::*;
 
-use crate::distances::Law;
+use crate::distances::{Law, Unseen};
 use crate::local_map::LocalMap;
 use crate::progress::begin;
 use crate::stitch::{Stitched, sides, stitch_by_sides};
@@ -48,24 +50,28 @@ pub(crate) fn least_stressed(
     maps: &[LocalMap],
     first: Stitched,
 ) -> Result<Stitched, MapError> {
+    let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
     let cut = |core, members| {
         RegionCover::new(surveyor.graph, RegionParams { core, members, ..surveyor.params.regions })
     };
     let covers = CORES.map(|core| cut(core, MEMBERS * core));
     let pieces = cut(PIECE[0], PIECE[1]);
-    let polishes = (covers.len() + 1) * pieces.regions().len();
+    let maps_of_pieces = (covers.len() + 2) * pieces.regions().len();
     let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
-    begin(Stage::Variants, Some((regions + polishes) as u64), surveyor.observer)?;
+    begin(Stage::Variants, Some((regions + maps_of_pieces + LIFT_STEPS) as u64), surveyor.observer)?;
     let mut layouts = vec![first.points];
     for cover in &covers {
         layouts.push(surveyor.laid_out_by(law, cover)?);
     }
-    let best = |piece: &Region| best_map(surveyor, law, piece, &layouts);
+    let unseen = distances.unseen(law);
+    let best = |piece: &Region| best_map(surveyor, law, piece, &layouts, &unseen);
     let best: Vec<LocalMap> = pieces.regions().par_iter().map(best).collect::<Result<_, _>>()?;
     let lie = Lie::of(cover, maps, &pieces, &best);
     let mirrored = sides(surveyor.graph, cover, maps, |a, b| lie.votes(a, b))?;
     let of_pieces = lie.pieces_by(cover, &mirrored, best.len());
-    let points = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
+    let joined = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
+    let pairs = distances.measure(law, None).pairs;
+    let points = lifted(surveyor, &pairs, &joined, &unseen, || surveyor.observer.advanced(1))?;
     surveyor.observer.finished(Stage::Variants);
     Ok(Stitched { points, ..stitch_by_sides(surveyor.graph, cover, maps, &mirrored)? })
 }
@@ -124,29 +130,51 @@ impl Lie {
     }
 }
 
-/// The map of a piece from the layout that leads to the least stress.
+/// The map of a piece from the layout that leads to the least stress, or from that lifted if it is better.
 fn best_map(
     surveyor: &Surveyor,
     law: &Law,
     piece: &Region,
     layouts: &[Vec<Point>],
+    unseen: &Unseen,
 ) -> Result<LocalMap, MapError> {
     let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
     let pairs = distances.inside(law, surveyor.graph, &piece.members, None);
     let mut newton = Newton::new(&pairs);
-    let mut best: Option<LocalMap> = None;
-    for layout in layouts {
+    let mut polished = |start: &[Point]| {
         if surveyor.observer.interrupted() {
             return Err(MapError::Interrupted);
         }
-        let start: Vec<Point> = piece.members.iter().map(|&member| layout[member as usize]).collect();
-        let map = newton.minimise(&pairs, &start, POLISH, || true)?;
+        let map = newton.minimise(&pairs, start, POLISH, || true)?;
         surveyor.observer.advanced(1);
-        if best.as_ref().is_none_or(|best| map.stress1 < best.stress1) {
-            best = Some(LocalMap { points: map.points, stress1: map.stress1 });
-        }
+        Ok(LocalMap { points: map.points, stress1: map.stress1 })
+    };
+    let better = |a: LocalMap, b: LocalMap| if b.stress1 < a.stress1 { b } else { a };
+    let of = |layout: &[Point]| -> Vec<Point> {
+        piece.members.iter().map(|&member| layout[member as usize]).collect()
+    };
+    let mut best = polished(&of(&layouts[0]))?;
+    for layout in &layouts[1..] {
+        best = better(best, polished(&of(layout))?);
     }
-    Ok(best.expect("there is the first layout (bug in covimap)"))
+    let start = lifted(surveyor, &pairs, &best.points, &unseen.among(&piece.members), || ())?;
+    Ok(better(best, polished(&start)?))
+}
+
+/// Takes twists out; tells of every step.
+fn lifted(
+    surveyor: &Surveyor,
+    pairs: &PairDistances,
+    start: &[Point],
+    unseen: &Unseen,
+    stepped: impl Fn(),
+) -> Result<Vec<Point>, MapError> {
+    let go_on = || {
+        stepped();
+        !surveyor.observer.interrupted()
+    };
+    let points = lift(pairs, start, unseen, surveyor.seed, go_on)?;
+    if surveyor.observer.interrupted() { Err(MapError::Interrupted) } else { Ok(points) }
 }
 
 #[cfg(test)]

@@ -36,8 +36,10 @@ mod shepard;
 mod steps;
 mod weights;
 
+use std::borrow::Cow;
+
 use covimap_embed::{
-    DistanceCurve, DistanceFamily, DistanceFunction, Embedding, Pair, PairDistances, Point,
+    Apart, Bound, DistanceCurve, DistanceFamily, DistanceFunction, Embedding, Pair, PairDistances, Point,
     StretchedExponential,
 };
 use rayon::prelude::*;
@@ -58,6 +60,8 @@ use weights::Trust;
 pub(crate) const ROUNDS: usize = 5;
 /// Links a landmark that a fit asks for: half as many again as coordinates.
 const LINKS_A_LANDMARK: usize = 3;
+/// Percentage of the links that no bound of unlinked landmarks exceeds.
+const NEARLY_ALL: usize = 95;
 /// A pair that keeps less of its weight is doubted.
 const HALF: f64 = 0.5;
 
@@ -88,6 +92,8 @@ pub(crate) struct Distances<'a> {
     /// The links with the distances of the fixed logarithm.
     pairs: &'a PairDistances,
     counts: Vec<PairCount>,
+    /// Steps that show each landmark.
+    sightings: Vec<u32>,
     sample: Sample,
     repetition: f64,
 }
@@ -107,6 +113,34 @@ pub(crate) struct Measured {
     pub pairs: PairDistances,
     /// Share of the pairs that keep less than half of their weight.
     pub doubted: f64,
+}
+
+/// What a law makes of landmarks that were never seen together: they are at least as far apart as if they had been seen
+/// together half a time.
+pub(crate) struct Unseen<'a> {
+    law: &'a Law,
+    sightings: Cow<'a, [u32]>,
+    longest: f64,
+}
+
+impl Unseen<'_> {
+    /// The same of some landmarks, numbered by their places in the list.
+    pub fn among(&self, members: &[u32]) -> Self {
+        let sightings = members.iter().map(|&member| self.sightings[member as usize]).collect();
+        Self { sightings, ..*self }
+    }
+}
+
+impl Apart for Unseen<'_> {
+    fn bound(&self, i: u32, j: u32) -> Bound {
+        let either = self.sightings[i as usize] + self.sightings[j as usize];
+        let (distance, weight, _) = self.law.measure(PairCount { together: 0, either }, f64::INFINITY);
+        Bound { distance: distance.min(self.longest), weight }
+    }
+
+    fn longest(&self) -> f64 {
+        self.longest
+    }
 }
 
 impl Law {
@@ -134,7 +168,8 @@ impl<'a> Distances<'a> {
         }
         let sample = Sample::draw(pairs, steps, seed);
         let repetition = sample.repetition();
-        Some(Self { pairs, counts: counts::of_links(graph, counts, members), sample, repetition })
+        let sightings = members.iter().map(|&member| counts.sightings()[member as usize]).collect();
+        Some(Self { pairs, counts: counts::of_links(graph, counts, members), sightings, sample, repetition })
     }
 
     /// The law that local maps ask for: in them no wrong turn of the whole makes distances wrong.
@@ -160,7 +195,7 @@ impl<'a> Distances<'a> {
         let mut law = self.fit_to(families, &points);
         for _ in 0..ROUNDS {
             let Some(present) = &law else { break };
-            points = polish(&self.measure(present, &points).pairs, &points)?.points;
+            points = polish(&self.measure(present, Some(&points)).pairs, &points)?.points;
             law = self.fit_to(families, &points).or(law);
         }
         Ok((law, points))
@@ -202,10 +237,22 @@ impl<'a> Distances<'a> {
         })
     }
 
-    /// Distances and weights of the links under a law, seen from the present map.
-    pub fn measure(&self, law: &Law, points: &[Point]) -> Measured {
+    /// What a law makes of landmarks that were never seen together. They are taken to be no farther apart than nearly
+    /// all of those that were.
+    pub fn unseen<'b>(&'b self, law: &'b Law) -> Unseen<'b> {
+        let sampled = self.sample.links.iter().map(|&link| self.counts[link]);
+        let mut lengths: Vec<f64> =
+            sampled.map(|count| law.stretch * law.curve.distance(count.frequency())).collect();
+        lengths.sort_unstable_by(f64::total_cmp);
+        let longest = lengths[(lengths.len() - 1) * NEARLY_ALL / 100];
+        Unseen { law, sightings: Cow::Borrowed(&self.sightings), longest }
+    }
+
+    /// Distances and weights of the links under a law; with a map, seen from that.
+    pub fn measure(&self, law: &Law, points: Option<&[Point]>) -> Measured {
         let measure = |(pair, count): (&Pair, &PairCount)| {
-            let (distance, weight, kept) = law.measure(*count, length(points, [pair.i, pair.j]));
+            let in_map = points.map_or(f64::INFINITY, |points| length(points, [pair.i, pair.j]));
+            let (distance, weight, kept) = law.measure(*count, in_map);
             (Pair { distance, weight, ..*pair }, kept < HALF)
         };
         let (pairs, doubted): (Vec<Pair>, Vec<bool>) =

@@ -17,7 +17,7 @@ use super::fit::Fit;
 use crate::layout::{Layout, lay_out};
 use crate::progress::begin;
 use crate::surveyor::Surveyor;
-use crate::{MapError, Observer, RegionCover, Stage};
+use crate::{MapError, MapperParams, Observer, RegionCover, Stage};
 
 /// Fewest landmarks of a chart whose frame is worth keeping.
 const FEWEST: usize = 3;
@@ -129,9 +129,10 @@ fn solve(joined: &Joined, draft: &Draft, core: Vec<u32>, observer: &dyn Observer
     members.sort_unstable();
     members.dedup();
     let graph = joined.graph.restricted_to(&members);
-    let params = &joined.params().auto;
-    let Layout { cover, stitched } =
-        lay_out(&Surveyor { graph: &graph, distances: None, params, observer: &Quiet(observer) })?;
+    let MapperParams { auto, seed, .. } = joined.params();
+    let observer = Quiet(observer);
+    let surveyor = Surveyor { graph: &graph, distances: None, params: auto, seed: *seed, observer: &observer };
+    let Layout { cover, stitched, .. } = lay_out(&surveyor)?;
     Ok(Piece { core, members, points: stitched.points, cover })
 }
 

@@ -1,0 +1,48 @@
+//! What pulls at each object.
+
+use crate::PairDistances;
+use crate::stress::Incidence;
+
+/// The springs of object `i` are `springs[starts[i]..starts[i + 1]]`, ascending.
+#[derive(Default)]
+pub(super) struct Springs {
+    starts: Vec<usize>,
+    springs: Vec<Spring>,
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Spring {
+    /// The object at the other end.
+    pub to: u32,
+    pub length: f64,
+    pub weight: f64,
+}
+
+impl Springs {
+    /// Of a pair list.
+    pub fn of_pairs(pairs: &PairDistances) -> Self {
+        let incidence = Incidence::new(pairs);
+        let row = |own| {
+            let spring = |&(to, pair): &(u32, u32)| {
+                let pair = pairs.pairs()[pair as usize];
+                Spring { to, length: pair.distance, weight: pair.weight }
+            };
+            incidence.of(own).iter().map(spring)
+        };
+        Self::of_rows((0..pairs.objects()).map(row))
+    }
+
+    /// Of a row an object.
+    pub fn of_rows(rows: impl Iterator<Item = impl IntoIterator<Item = Spring>>) -> Self {
+        let mut all = Self { starts: vec![0], springs: Vec::new() };
+        for row in rows {
+            all.springs.extend(row);
+            all.starts.push(all.springs.len());
+        }
+        all
+    }
+
+    pub fn of(&self, object: usize) -> &[Spring] {
+        &self.springs[self.starts[object]..self.starts[object + 1]]
+    }
+}
