@@ -130,7 +130,7 @@ impl Lie {
     }
 }
 
-/// The map of a piece from the layout that leads to the least stress, or from that lifted if it is better.
+/// The map of a piece from the layout that leads to the least stress, or that one lifted if it is better.
 fn best_map(
     surveyor: &Surveyor,
     law: &Law,
@@ -150,13 +150,12 @@ fn best_map(
         Ok(LocalMap { points: map.points, stress1: map.stress1 })
     };
     let better = |a: LocalMap, b: LocalMap| if b.stress1 < a.stress1 { b } else { a };
-    let of = |layout: &[Point]| -> Vec<Point> {
-        piece.members.iter().map(|&member| layout[member as usize]).collect()
+    let mut from = |layout: &Vec<Point>| {
+        let start: Vec<Point> = piece.members.iter().map(|&member| layout[member as usize]).collect();
+        polished(&start)
     };
-    let mut best = polished(&of(&layouts[0]))?;
-    for layout in &layouts[1..] {
-        best = better(best, polished(&of(layout))?);
-    }
+    let maps: Vec<LocalMap> = layouts.iter().map(&mut from).collect::<Result<_, _>>()?;
+    let best = maps.into_iter().reduce(better).expect("there is the first layout (bug in covimap)");
     let start = lifted(surveyor, &pairs, &best.points, &unseen.among(&piece.members), || ())?;
     Ok(better(best, polished(&start)?))
 }

@@ -6,7 +6,7 @@ use super::springs::{Spring, Springs};
 use super::{Apart, BELIEVED, Lifted, length};
 
 /// Pairs count as near up to so many times their bound: steps bring them nearer before they are looked for again.
-const AHEAD: f64 = 1.3;
+pub(super) const AHEAD: f64 = 1.3;
 
 /// The bounds of the pairs that are near and not among the links.
 ///
