@@ -109,8 +109,9 @@ pub(crate) fn settle(
     let Surveyor { graph, distances, params, observer, .. } = *surveyor;
     let Start { points, shape, untwisted } = start;
     let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
-    let rough = if untwisted { 0 } else { ROUGH.max_iterations };
-    let steps = rough + distances::ROUNDS * A_FEW_STEPS.max_iterations;
+    let (rough, rounds) =
+        if untwisted { (0, distances::UNFOLDED_ROUNDS) } else { (ROUGH.max_iterations, distances::ROUNDS) };
+    let steps = rough + rounds * A_FEW_STEPS.max_iterations;
     begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
     let mut start = shape.start(fixed, points)?;
     let terms = shape.terms(fixed)?;
@@ -123,7 +124,7 @@ pub(crate) fn settle(
             start = unfold(fixed, &start)?.points;
         }
         let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
-        (law, start) = distances.learn(start, &families, polish)?;
+        (law, start) = distances.learn(start, &families, rounds, polish)?;
     }
     let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, Some(&start)));
     observer.finished(Stage::Distances);

@@ -56,8 +56,11 @@ pub use shepard::ShepardRow;
 pub(crate) use steps::{ComponentSteps, Membership};
 use weights::Trust;
 
-/// Rounds of fitting and a few steps of the polish: with two, folds stay; more than five change little.
+/// Rounds of fitting and a few steps of the polish for a map that may be folded: with two, folds stay; more than five
+/// change little.
 pub(crate) const ROUNDS: usize = 5;
+/// Rounds for a map without folds, which has no distances that are much too long.
+pub(crate) const UNFOLDED_ROUNDS: usize = 3;
 /// Links a landmark that a fit asks for: half as many again as coordinates.
 const LINKS_A_LANDMARK: usize = 3;
 /// Percentage of the links that no bound of unlinked landmarks exceeds.
@@ -190,10 +193,11 @@ impl<'a> Distances<'a> {
         &self,
         mut points: Vec<Point>,
         families: &[DistanceFamily],
+        rounds: usize,
         mut polish: impl FnMut(&PairDistances, &[Point]) -> Result<Embedding, MapError>,
     ) -> Result<(Option<Law>, Vec<Point>), MapError> {
         let mut law = self.fit_to(families, &points);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let Some(present) = &law else { break };
             points = polish(&self.measure(present, Some(&points)).pairs, &points)?.points;
             law = self.fit_to(families, &points).or(law);
