@@ -178,9 +178,9 @@ impl Mapper {
                 let own: Vec<Point> = evidence.members.iter().map(|&member| all[member as usize]).collect();
                 let fixed = graph.to_pairs();
                 let distances = evidence.distances(graph, &fixed, *seed);
-                let surveyor = Surveyor { graph, distances: distances.as_ref(), params: auto, seed: *seed, observer };
-                let start =
-                    Start { points: in_map_units(graph, own)?, shape: Shape::FREE, untwisted: false };
+                let surveyor =
+                    Surveyor { graph, distances: distances.as_ref(), params: auto, seed: *seed, observer };
+                let start = Start { points: in_map_units(graph, own)?, shape: Shape::FREE, untwisted: false };
                 settle(&surveyor, &fixed, evidence, start)
             }
         };

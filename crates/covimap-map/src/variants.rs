@@ -17,7 +17,8 @@
 //! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size.
 
 use covimap_embed::{
-    Correspondence, LIFT_STEPS, Newton, PairDistances, Point, ProcrustesOptions, Reflection, StopRule, lift, procrustes,
+    Correspondence, LIFT_STEPS, Newton, PairDistances, Point, ProcrustesOptions, Reflection, StopRule, lift,
+    procrustes,
 };
 use rayon::prelude::*;
 

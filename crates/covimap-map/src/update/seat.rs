@@ -131,7 +131,8 @@ fn solve(joined: &Joined, draft: &Draft, core: Vec<u32>, observer: &dyn Observer
     let graph = joined.graph.restricted_to(&members);
     let MapperParams { auto, seed, .. } = joined.params();
     let observer = Quiet(observer);
-    let surveyor = Surveyor { graph: &graph, distances: None, params: auto, seed: *seed, observer: &observer };
+    let surveyor =
+        Surveyor { graph: &graph, distances: None, params: auto, seed: *seed, observer: &observer };
     let Layout { cover, stitched, .. } = lay_out(&surveyor)?;
     Ok(Piece { core, members, points: stitched.points, cover })
 }
