@@ -200,6 +200,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::LocalMaps => "local maps",
         Stage::Stitch => "stitch",
         Stage::Variants => "variants",
+        Stage::Lift => "lift",
         Stage::Polish => "polish",
         Stage::Distances => "distances",
         Stage::Refine => "refine",
@@ -219,7 +220,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::Variants => "regions and pieces",
         Stage::Refine => "iterations at most",
         Stage::Sensor => "components",
-        Stage::Distances | Stage::Polish => "steps at most",
+        Stage::Lift | Stage::Distances | Stage::Polish => "steps at most",
         Stage::Regions | Stage::Stitch | Stage::Classical => "steps",
     }
 }

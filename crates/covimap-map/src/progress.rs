@@ -17,6 +17,8 @@ pub enum Stage {
     Stitch,
     /// Other layouts where hinges are many; counted in regions and in polishes of pieces.
     Variants,
+    /// Taking twists out of the whole; counted in steps.
+    Lift,
     /// Least stress over all links; counted in steps.
     Polish,
     /// Learning the distance function, and least stress again; counted in steps.

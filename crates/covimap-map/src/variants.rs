@@ -5,16 +5,21 @@
 //! no stress nearby costs it where streets meet again. So the map is cut into pieces that are large enough for
 //! streets to meet in them, each piece is brought to least stress from every layout, and keeps the best.
 //!
+//! What is wrong in all of them, and what goes wrong where pieces meet, is turned round by [lifting](covimap_embed::lift()): the map
+//! untwists in four dimensions and is pressed flat again. Landmarks that were never seen together, although each was seen often, are kept apart
+//! meanwhile: a twist lays them over each other.
+//!
 //! # Algorithm
 //! 1. The graph is covered by regions of other sizes as well; their local maps, under the same law, are stitched
 //!    to one more layout each.
 //! 2. Pieces of some hundred landmarks, which overlap like regions, are polished from every layout, all under the
-//!    same distances and with nothing around them. That of least stress stays.
+//!    same distances and with nothing around them. That of least stress is lifted and polished once more; the better of both stays.
 //! 3. Every piece is a witness of how the regions of the first cover lie to each other, with more weight than the seams of these;
 //!    synchronisation decides their sides anew, and those of the pieces with them. The pieces are stitched by these sides.
+//! 4. The whole is lifted.
 //!
 //! # Complexity
-//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size.
+//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size; twice a lift of `n` landmarks.
 
 use covimap_embed::{
     Correspondence, LIFT_STEPS, Newton, PairDistances, Point, ProcrustesOptions, Reflection, StopRule, lift,
@@ -41,7 +46,7 @@ const EVIDENCE: f64 = 100.0;
 /// How a piece is polished.
 const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
 
-/// The best of the layout `first`, which the maps of `cover` were stitched to, and of others.
+/// The best of the layout `first`, which the maps of `cover` were stitched to, and of others, untwisted.
 ///
 /// Seams are reported as the regions of `cover` have them, with the sides that they have in the result.
 pub(crate) fn least_stressed(
@@ -59,7 +64,7 @@ pub(crate) fn least_stressed(
     let pieces = cut(PIECE[0], PIECE[1]);
     let maps_of_pieces = (covers.len() + 2) * pieces.regions().len();
     let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
-    begin(Stage::Variants, Some((regions + maps_of_pieces + LIFT_STEPS) as u64), surveyor.observer)?;
+    begin(Stage::Variants, Some((regions + maps_of_pieces) as u64), surveyor.observer)?;
     let mut layouts = vec![first.points];
     for cover in &covers {
         layouts.push(surveyor.laid_out_by(law, cover)?);
@@ -71,9 +76,12 @@ pub(crate) fn least_stressed(
     let mirrored = sides(surveyor.graph, cover, maps, |a, b| lie.votes(a, b))?;
     let of_pieces = lie.pieces_by(cover, &mirrored, best.len());
     let joined = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
+    surveyor.observer.finished(Stage::Variants);
+
+    begin(Stage::Lift, Some(LIFT_STEPS as u64), surveyor.observer)?;
     let pairs = distances.measure(law, None).pairs;
     let points = lifted(surveyor, &pairs, &joined, &unseen, || surveyor.observer.advanced(1))?;
-    surveyor.observer.finished(Stage::Variants);
+    surveyor.observer.finished(Stage::Lift);
     Ok(Stitched { points, ..stitch_by_sides(surveyor.graph, cover, maps, &mirrored)? })
 }
 
@@ -161,7 +169,7 @@ fn best_map(
     Ok(better(best, polished(&start)?))
 }
 
-/// Takes twists out; tells of every step.
+/// Takes twists out; `stepped` is called before every step.
 fn lifted(
     surveyor: &Surveyor,
     pairs: &PairDistances,
