@@ -8,9 +8,12 @@
 //!    and stitched once more: what more they share may decide the side.
 //! 3. Where hinges are left, and they are many, the map is laid out in other ways as well, and each part of it comes from the way that
 //!    has the least stress there ([`variants`](crate::variants)).
+//! 4. Where they are many, or so many that some of their sides will be wrong, twists are taken out of the whole.
 
+use covimap_embed::{LIFT_STEPS, Point};
 use rayon::prelude::*;
 
+use crate::distances::Law;
 use crate::local_map::LocalMap;
 use crate::progress::begin;
 use crate::stitch::{Stitched, stitch};
@@ -20,11 +23,14 @@ use crate::{MapError, RegionCover, Stage, variants};
 /// Landmarks for each hinge that is borne: with fewer, other layouts are tried.
 const BORNE: usize = 1000;
 
+/// Hinges that may all be right: with more, a wrong side is to be expected.
+const RIGHT: usize = 25;
+
 /// A component laid out, in map units.
 pub(crate) struct Layout {
     pub cover: RegionCover,
     pub stitched: Stitched,
-    /// Whether twists were looked for, and taken out.
+    /// Whether twists were taken out.
     pub untwisted: bool,
 }
 
@@ -53,9 +59,25 @@ pub(crate) fn lay_out(surveyor: &Surveyor) -> Result<Layout, MapError> {
         stitched = stitch(graph, &cover, &maps, observer)?;
     }
     observer.finished(Stage::Stitch);
-    let law = law.filter(|_| stitched.seams.hinges.len() * BORNE > graph.landmarks());
+    let hinges = stitched.seams.hinges.len();
+    let thin = hinges * BORNE > graph.landmarks();
+    let law = law.filter(|_| thin || hinges > RIGHT);
     if let Some(law) = &law {
-        stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched)?;
+        if thin {
+            stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched)?;
+        }
+        stitched.points = untwisted(surveyor, law, &stitched.points)?;
     }
     Ok(Layout { cover, stitched, untwisted: law.is_some() })
+}
+
+/// The whole, lifted under a law.
+fn untwisted(surveyor: &Surveyor, law: &Law, points: &[Point]) -> Result<Vec<Point>, MapError> {
+    begin(Stage::Lift, Some(LIFT_STEPS as u64), surveyor.observer)?;
+    let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
+    let pairs = distances.measure(law, None).pairs;
+    let stepped = || surveyor.observer.advanced(1);
+    let points = surveyor.lifted(&pairs, points, &distances.unseen(law), stepped)?;
+    surveyor.observer.finished(Stage::Lift);
+    Ok(points)
 }

@@ -1,9 +1,9 @@
 //! The surveyor: maps regions by themselves, and all regions of a cover.
 
-use covimap_embed::{DistanceFamily, Point, StopRule};
+use covimap_embed::{DistanceFamily, PairDistances, Point, StopRule, lift};
 use rayon::prelude::*;
 
-use crate::distances::{Distances, Law};
+use crate::distances::{Distances, Law, Unseen};
 use crate::local_map::{self, LocalMap};
 use crate::stitch::stitch;
 use crate::{AutoParams, LinkGraph, MapError, Observer, Region, RegionCover, Silent};
@@ -64,6 +64,24 @@ impl Surveyor<'_> {
             Some(law) => self.following(law, region, map),
             None => Ok(map),
         }
+    }
+
+    /// A map with its twists taken out: it untwists in four dimensions and is pressed flat again ([`lift`]). Landmarks that were
+    /// never seen together, although each was seen often, are kept apart meanwhile: a twist lays them over each other.
+    /// `stepped` is called before every step.
+    pub fn lifted(
+        &self,
+        pairs: &PairDistances,
+        start: &[Point],
+        unseen: &Unseen,
+        stepped: impl Fn(),
+    ) -> Result<Vec<Point>, MapError> {
+        let go_on = || {
+            stepped();
+            !self.observer.interrupted()
+        };
+        let points = lift(pairs, start, unseen, self.seed, go_on)?;
+        if self.observer.interrupted() { Err(MapError::Interrupted) } else { Ok(points) }
     }
 
     fn following(&self, law: &Law, region: &Region, map: LocalMap) -> Result<LocalMap, MapError> {

@@ -5,9 +5,7 @@
 //! no stress nearby costs it where streets meet again. So the map is cut into pieces that are large enough for
 //! streets to meet in them, each piece is brought to least stress from every layout, and keeps the best.
 //!
-//! What is wrong in all of them, and what goes wrong where pieces meet, is turned round by [lifting](covimap_embed::lift()): the map
-//! untwists in four dimensions and is pressed flat again. Landmarks that were never seen together, although each was seen often, are kept apart
-//! meanwhile: a twist lays them over each other.
+//! What is wrong in all of them, [lifting](covimap_embed::lift()) may turn round.
 //!
 //! # Algorithm
 //! 1. The graph is covered by regions of other sizes as well; their local maps, under the same law, are stitched
@@ -16,15 +14,11 @@
 //!    same distances and with nothing around them. That of least stress is lifted and polished once more; the better of both stays.
 //! 3. Every piece is a witness of how the regions of the first cover lie to each other, with more weight than the seams of these;
 //!    synchronisation decides their sides anew, and those of the pieces with them. The pieces are stitched by these sides.
-//! 4. The whole is lifted.
 //!
 //! # Complexity
-//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size; twice a lift of `n` landmarks.
+//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size and a lift of these.
 
-use covimap_embed::{
-    Correspondence, LIFT_STEPS, Newton, PairDistances, Point, ProcrustesOptions, Reflection, StopRule, lift,
-    procrustes,
-};
+use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
 use rayon::prelude::*;
 
 use crate::distances::{Law, Unseen};
@@ -46,7 +40,7 @@ const EVIDENCE: f64 = 100.0;
 /// How a piece is polished.
 const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
 
-/// The best of the layout `first`, which the maps of `cover` were stitched to, and of others, untwisted.
+/// The best of the layout `first`, which the maps of `cover` were stitched to, and of others.
 ///
 /// Seams are reported as the regions of `cover` have them, with the sides that they have in the result.
 pub(crate) fn least_stressed(
@@ -75,13 +69,8 @@ pub(crate) fn least_stressed(
     let lie = Lie::of(cover, maps, &pieces, &best);
     let mirrored = sides(surveyor.graph, cover, maps, |a, b| lie.votes(a, b))?;
     let of_pieces = lie.pieces_by(cover, &mirrored, best.len());
-    let joined = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
+    let points = stitch_by_sides(surveyor.graph, &pieces, &best, &of_pieces)?.points;
     surveyor.observer.finished(Stage::Variants);
-
-    begin(Stage::Lift, Some(LIFT_STEPS as u64), surveyor.observer)?;
-    let pairs = distances.measure(law, None).pairs;
-    let points = lifted(surveyor, &pairs, &joined, &unseen, || surveyor.observer.advanced(1))?;
-    surveyor.observer.finished(Stage::Lift);
     Ok(Stitched { points, ..stitch_by_sides(surveyor.graph, cover, maps, &mirrored)? })
 }
 
@@ -165,24 +154,8 @@ fn best_map(
     };
     let maps: Vec<LocalMap> = layouts.iter().map(&mut from).collect::<Result<_, _>>()?;
     let best = maps.into_iter().reduce(better).expect("there is the first layout (bug in covimap)");
-    let start = lifted(surveyor, &pairs, &best.points, &unseen.among(&piece.members), || ())?;
+    let start = surveyor.lifted(&pairs, &best.points, &unseen.among(&piece.members), || ())?;
     Ok(better(best, polished(&start)?))
-}
-
-/// Takes twists out; `stepped` is called before every step.
-fn lifted(
-    surveyor: &Surveyor,
-    pairs: &PairDistances,
-    start: &[Point],
-    unseen: &Unseen,
-    stepped: impl Fn(),
-) -> Result<Vec<Point>, MapError> {
-    let go_on = || {
-        stepped();
-        !surveyor.observer.interrupted()
-    };
-    let points = lift(pairs, start, unseen, surveyor.seed, go_on)?;
-    if surveyor.observer.interrupted() { Err(MapError::Interrupted) } else { Ok(points) }
 }
 
 #[cfg(test)]
