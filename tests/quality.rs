@@ -162,13 +162,14 @@ fn errors_of_recognition_cost_little() {
     }
 }
 
-/// Ten steps a landmark: streets hang on few links, and no single layout takes all sides rightly. Worst: .062 of the near triangles; a
-/// map that is laid out in one way alone has .48 with seed 2.
+/// Ten steps a landmark: streets hang on few links, and no single layout takes all sides rightly. Worst: .0073, .0696; from the truth
+/// .0054, .0620. A map that is laid out in one way alone has .48 of the near triangles with seed 2.
 #[test]
 fn thin_logs_of_street_blocks() {
-    for seed in [1, 2, 3] {
+    for seed in [1, 2, 3, 4, 5] {
         let run = Run::of(&SimSpec::large(BLOCKS, 3000, 10), seed, "L");
         let found = run.errors_of(&build(&run.log(), MapperParams::default()));
+        assert!(found.orientation_error.unwrap() < 0.009, "seed {seed}: {found:?}");
         assert!(found.local_orientation_error.unwrap() < 0.08, "seed {seed}: {found:?}");
     }
 }
