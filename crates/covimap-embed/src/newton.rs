@@ -69,7 +69,7 @@ impl Newton {
     }
 
     /// As [`newton`], but asks before every step whether to go on; if not, the result is what was
-    /// reached, with [`Termination::Interrupted`].
+    /// reached, with [`Termination::Interrupted`](crate::Termination::Interrupted).
     ///
     /// # Errors
     /// As [`newton`].

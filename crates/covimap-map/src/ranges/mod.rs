@@ -29,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::component::put_in_frame;
 use crate::{ChartFit, GlobalMap, MapError, PlacedLandmark, Range, SightingLog, delaunay_edges};
 use readings::Readings;
+use reduced::{fit_noise, move_landmarks};
 use sweep::Sweep;
 
 /// Rounds of places, scale and noise on the map as it is.
@@ -116,13 +117,13 @@ fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<R
     for _ in 0..FIRST_ROUNDS {
         sweep.place_steps();
         sweep.fit_scale();
-        sweep.fit_noise();
+        fit_noise(&mut sweep);
     }
     for _ in 0..ROUNDS {
         sweep.place_across();
-        sweep.move_landmarks();
+        move_landmarks(&mut sweep);
         sweep.place_steps();
-        sweep.fit_noise();
+        fit_noise(&mut sweep);
     }
     let misses: Vec<(f64, f64)> = (0..readings.all().len())
         .map(|place| (sweep.look(place).1, place))

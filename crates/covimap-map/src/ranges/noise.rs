@@ -1,7 +1,5 @@
 //! How far ranges are off: by how much in any case, and how much more when the landmark is farther.
 
-use super::sweep::median;
-
 /// Groups of ranges, from near to far, whose deviations are compared.
 const GROUPS: usize = 8;
 /// Standard deviation over the median of the absolute values, of a normal distribution.
@@ -58,6 +56,12 @@ impl Noise {
     pub fn variance(&self, length: f64) -> f64 {
         self.fixed + self.growing * length * length
     }
+}
+
+/// `None` of nothing.
+pub(super) fn median(values: &mut [f64]) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

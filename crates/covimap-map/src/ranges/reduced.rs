@@ -14,7 +14,9 @@
 use covimap_embed::Point;
 use rayon::prelude::*;
 
+use super::noise::Noise;
 use super::normal::{Normal, add, dot, sub, times};
+use super::readings::Reading;
 use super::sweep::Sweep;
 
 /// Most products with the matrix in one solution.
@@ -24,8 +26,30 @@ const LEFT: f64 = 1e-3;
 /// Share of the curvature of a place that is added to both axes: landmarks on a line leave it free across.
 const RIDGE: f64 = 1e-6;
 
+/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the last digit still needs a
+/// width.
+const LEAST: f64 = 1e-3;
+
+/// Sets the noise to what the misses of a sweep tell, each made larger by what its own place took away from it.
+pub(super) fn fit_noise(sweep: &mut Sweep) {
+    let reduced = Reduced::new(sweep);
+    let look = |(place, reading): (usize, &Reading)| {
+        let miss = sweep.look(place).1;
+        let free = 1.0 - reduced.leverage(place);
+        (free > 0.1).then(|| (reading.metres - miss, miss / free.sqrt()))
+    };
+    let looks: Vec<(f64, f64)> = sweep.readings.all().par_iter().enumerate().filter_map(look).collect();
+    sweep.noise = Noise::fit(looks, (LEAST * sweep.median).powi(2));
+}
+
+/// Moves every landmark of a sweep to where ranges and map fit best.
+pub(super) fn move_landmarks(sweep: &mut Sweep) {
+    let moves = Reduced::new(sweep).solve();
+    sweep.points.iter_mut().zip(moves).for_each(|(point, by)| *point = add(*point, by));
+}
+
 /// The equations at the present state of a sweep.
-pub(super) struct Reduced<'a> {
+struct Reduced<'a> {
     sweep: &'a Sweep<'a>,
     /// From place to landmark, for every range.
     toward: Vec<Point>,

@@ -3,10 +3,9 @@
 use covimap_embed::Point;
 use rayon::prelude::*;
 
-use super::noise::Noise;
+use super::noise::{Noise, median};
 use super::normal::{Normal, add, length, sub, times};
 use super::readings::{Reading, Readings};
-use super::reduced::Reduced;
 
 /// Gauss-Newton steps of a place in one round.
 const STEPS: usize = 3;
@@ -16,9 +15,6 @@ const RIDGE: f64 = 0.01;
 const HELD: f64 = 0.1;
 /// Weights fall from this many standard deviations on.
 const FAR: f64 = 3.0;
-/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the last digit still needs a
-/// width.
-const LEAST: f64 = 1e-3;
 
 /// Neighbours on the map, and how far it has them apart.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +36,7 @@ pub(super) struct Sweep<'a> {
     /// Metres a map unit.
     pub scale: f64,
     /// Of all ranges.
-    median: f64,
+    pub median: f64,
 }
 
 impl<'a> Sweep<'a> {
@@ -197,24 +193,6 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// The noise that the misses tell, each made larger by what its own place took away from it.
-    pub fn fit_noise(&mut self) {
-        let reduced = Reduced::new(self);
-        let look = |(place, reading): (usize, &Reading)| {
-            let miss = self.look(place).1;
-            let free = 1.0 - reduced.leverage(place);
-            (free > 0.1).then(|| (reading.metres - miss, miss / free.sqrt()))
-        };
-        let looks: Vec<(f64, f64)> = self.readings.all().par_iter().enumerate().filter_map(look).collect();
-        self.noise = Noise::fit(looks, (LEAST * self.median).powi(2));
-    }
-
-    /// Every landmark to where ranges and map fit best.
-    pub fn move_landmarks(&mut self) {
-        let moves = Reduced::new(self).solve();
-        self.points.iter_mut().zip(moves).for_each(|(point, by)| *point = add(*point, by));
-    }
-
     /// Standard error of the scale, metres a map unit: `s / sqrt(sum w d^2)`.
     pub fn scale_error(&self) -> f64 {
         let away = |(place, reading): (usize, &Reading)| {
@@ -222,10 +200,4 @@ impl<'a> Sweep<'a> {
         };
         self.scale / self.readings.all().iter().enumerate().map(away).sum::<f64>().sqrt()
     }
-}
-
-/// `None` of nothing.
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
