@@ -162,8 +162,8 @@ fn errors_of_recognition_cost_little() {
     }
 }
 
-/// Ten steps a landmark: streets hang on few links, and no single layout takes all sides rightly. Worst: .0073, .0696; from the truth
-/// .0054, .0620. A map that is laid out in one way alone has .48 of the near triangles with seed 2.
+/// Ten steps a landmark: streets hang on few links, and no single layout takes all sides rightly. Worst: .0073, .0696;
+/// from the truth .0054, .0620. A map that is laid out in one way alone has .48 of the near triangles with seed 2.
 #[test]
 fn thin_logs_of_street_blocks() {
     for seed in [1, 2, 3, 4, 5] {

@@ -19,7 +19,8 @@ use crate::{EmbedError, Embedding, PairDistances, Point, StopRule};
 const DAMPING: f64 = 1e-3;
 
 /// Minimises the stress of `pairs` from `start` over the objects that are not `held`, and asks before every
-/// step whether to go on; if not, the result is what was reached, with [`Termination::Interrupted`](crate::Termination::Interrupted).
+/// step whether to go on; if not, the result is what was reached, with
+/// [`Termination::Interrupted`](crate::Termination::Interrupted).
 ///
 /// Objects that are held keep their places to the last bit. Converged is a configuration from which a step
 /// along the plain blocks of eq. (1), and the next one, gain less than the tolerance.

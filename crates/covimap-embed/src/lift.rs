@@ -1,21 +1,21 @@
 //! Lifting: a map that lies twisted gets two more dimensions, untwists in them, and is pressed flat again.
 //!
 //! Where a street lies twisted, what is beyond it is a mirror image of what it should be. In the plane no small move
-//! mends that: everything beyond would have to pass through itself. With more dimensions it turns round, at no cost. What
-//! makes it turn are pairs that a twist has laid over each other. Some of these have distances that are too long;
+//! mends that: everything beyond would have to pass through itself. With more dimensions it turns round, at no cost.
+//! What makes it turn are pairs that a twist has laid over each other. Some of these have distances that are too long;
 //! of most nothing is listed, but if two objects are never found together although each is looked at often, they are
 //! probably some way apart.
 //!
 //! # Algorithm
-//! Objects are points `x` of four dimensions, of which two are those of the map and start at random. Minimised is
+//! Objects are points `x` of four dimensions: the two of the map, and two in which they start at random. Minimised is
 //!
 //! `sum w_ij (r_ij - d_ij)^2 + sum_unlisted v_ij max(0, b_ij - r_ij)^2 + mu sum w_i |z_i|^2`,  (1)
 //!
 //! `r_ij = |x_i - x_j|`, `b_ij` how far apart two objects at least seem to be that no pair lists, `w_i = sum_j w_ij`,
 //! and `z_i` the two coordinates that are to go. The press `mu` is small at first, and rises by the same factor from
 //! level to level until it leaves nothing of them. At each level, unlisted pairs that are near each other are looked
-//! for anew, and some steps of [descent](crate::descent) are taken, preconditioned with `V` for the coordinates of the map
-//! and with `V + mu diag(w_i)` for the others, `V` the Laplacian of the weights.
+//! for anew, and some steps of [descent](crate::descent) are taken, preconditioned with `V` for the coordinates of the
+//! map and with `V + mu diag(w_i)` for the others, `V` the Laplacian of the weights.
 //!
 //! The result is near a minimum of (1) and not of the stress: minimise that next.
 //!
@@ -88,9 +88,9 @@ pub struct Bound {
 
 /// Untwists a map in four dimensions, and presses it flat again; the module says how.
 ///
-/// `start` is a map that is right in the small, as one put together from local maps. `seed` decides which way up its objects
-/// go at first. `go_on` is asked before every step, of which there are at most [`LIFT_STEPS`]; if it says no, what was reached is
-/// pressed flat at once.
+/// `start` is a map that is right in the small, as one put together from local maps. `seed` decides which way up its
+/// objects go at first. `go_on` is asked before every step, of which there are at most [`LIFT_STEPS`]; if it says no,
+/// what was reached is pressed flat at once.
 ///
 /// # Errors
 /// [`EmbedError::BadStart`] for a start that does not fit; [`EmbedError::Singular`] and
@@ -108,7 +108,7 @@ pub fn lift(
     }
     let mut folded = Unfolding {
         links: Springs::of_pairs(pairs),
-        bounds: Springs::default(),
+        bounds: Springs::none(start.len()),
         laplacian: Laplacian::of(pairs)?,
         press: Press::new(pairs),
     };

@@ -6,8 +6,8 @@
 //!    are brought to least stress under it.
 //! 2. They are stitched. Regions at a hinge are widened to all landmarks that their cores are linked to, and solved
 //!    and stitched once more: what more they share may decide the side.
-//! 3. Where hinges are left, and they are many, the map is laid out in other ways as well, and each part of it comes from the way that
-//!    has the least stress there ([`variants`](crate::variants)).
+//! 3. Where hinges are left, and they are many, the map is laid out in other ways as well, and each part of it comes
+//!    from the way that has the least stress there ([`variants`](crate::variants)).
 //! 4. Where they are many, or so many that some of their sides will be wrong, twists are taken out of the whole.
 
 use covimap_embed::{LIFT_STEPS, Point};

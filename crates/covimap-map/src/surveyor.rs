@@ -66,9 +66,9 @@ impl Surveyor<'_> {
         }
     }
 
-    /// A map with its twists taken out: it untwists in four dimensions and is pressed flat again ([`lift`]). Landmarks that were
-    /// never seen together, although each was seen often, are kept apart meanwhile: a twist lays them over each other.
-    /// `stepped` is called before every step.
+    /// A map with its twists taken out: it untwists in four dimensions and is pressed flat again ([`lift`]). Landmarks
+    /// that were never seen together, although each was seen often, are kept apart meanwhile: a twist lays them over
+    /// each other. `stepped` is called before every step.
     pub fn lifted(
         &self,
         pairs: &PairDistances,

@@ -11,12 +11,15 @@
 //! 1. The graph is covered by regions of other sizes as well; their local maps, under the same law, are stitched
 //!    to one more layout each.
 //! 2. Pieces of some hundred landmarks, which overlap like regions, are polished from every layout, all under the
-//!    same distances and with nothing around them. That of least stress is lifted and polished once more; the better of both stays.
-//! 3. Every piece is a witness of how the regions of the first cover lie to each other, with more weight than the seams of these;
-//!    synchronisation decides their sides anew, and those of the pieces with them. The pieces are stitched by these sides.
+//!    same distances and with nothing around them. That of least stress is lifted and polished once more; the better of
+//!    both stays.
+//! 3. Every piece is a witness of how the regions of the first cover lie to each other, with more weight than the seams
+//!    of these; synchronisation decides their sides anew, and those of the pieces with them. The pieces are stitched by
+//!    these sides.
 //!
 //! # Complexity
-//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size and a lift of these.
+//! For each layout that of the first one, and a polish of `O(n)` landmarks in pieces of bounded size and a lift of
+//! these.
 
 use covimap_embed::{Correspondence, Newton, Point, ProcrustesOptions, Reflection, StopRule, procrustes};
 use rayon::prelude::*;
@@ -34,8 +37,8 @@ const CORES: [usize; 2] = [25, 50];
 const MEMBERS: usize = 10;
 /// Landmarks in the core of a piece, and its members at most.
 const PIECE: [usize; 2] = [400, 1600];
-/// Evidence of a piece for how two of its regions lie to each other: more than seams of small regions have, which lie twisted
-/// now and then.
+/// Evidence of a piece for how two of its regions lie to each other: more than seams of small regions have, which lie
+/// twisted now and then.
 const EVIDENCE: f64 = 100.0;
 /// How a piece is polished.
 const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
@@ -74,7 +77,8 @@ pub(crate) fn least_stressed(
     Ok(Stitched { points, ..stitch_by_sides(surveyor.graph, cover, maps, &mirrored)? })
 }
 
-/// How regions lie in pieces: the pieces that hold the core of each region, ascending, and whether its map lies mirrored in theirs.
+/// How regions lie in pieces: the pieces that hold the core of each region, ascending, and whether its map lies
+/// mirrored in theirs.
 struct Lie(Vec<Vec<(u32, bool)>>);
 
 impl Lie {

@@ -14,7 +14,7 @@ pub(super) const AHEAD: f64 = 1.3;
 pub(super) fn too_near(x: &[Lifted], links: &Springs, apart: &impl Apart) -> Springs {
     let wide = AHEAD * apart.longest();
     if !(wide > 0.0 && wide.is_finite()) {
-        return Springs::of_rows(x.iter().map(|_| []));
+        return Springs::none(x.len());
     }
     let cell = |point: &Lifted| [0, 1].map(|axis| (point[axis] / wide).floor() as i64);
     let mut sorted: Vec<([i64; 2], u32)> = (0..).zip(x).map(|(own, point)| (cell(point), own)).collect();

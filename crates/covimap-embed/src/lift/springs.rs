@@ -4,7 +4,6 @@ use crate::PairDistances;
 use crate::stress::Incidence;
 
 /// The springs of object `i` are `springs[starts[i]..starts[i + 1]]`, ascending.
-#[derive(Default)]
 pub(super) struct Springs {
     starts: Vec<usize>,
     springs: Vec<Spring>,
@@ -19,6 +18,11 @@ pub(super) struct Spring {
 }
 
 impl Springs {
+    /// Of objects that nothing pulls at.
+    pub fn none(objects: usize) -> Self {
+        Self { starts: vec![0; objects + 1], springs: Vec::new() }
+    }
+
     /// Of a pair list.
     pub fn of_pairs(pairs: &PairDistances) -> Self {
         let incidence = Incidence::new(pairs);

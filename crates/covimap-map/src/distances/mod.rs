@@ -1,9 +1,9 @@
 //! The distance function of a log: learnt from the map that it makes.
 //!
-//! Regions need distances before anything is known of the sensor, and take the paper's logarithm. A first curve is fitted to
-//! their local maps, which are stitched; a rough polish takes the logarithm again. That map shows how frequencies really fall with distance. So
-//! a curve is fitted to it, the map is polished with the distances of that curve, and again:
-//! alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
+//! Regions need distances before anything is known of the sensor, and take the paper's logarithm. A first curve is
+//! fitted to their local maps, which are stitched; a rough polish takes the logarithm again. That map shows how
+//! frequencies really fall with distance. So a curve is fitted to it, the map is polished with the distances of that
+//! curve, and again: alternating least squares, as in non-metric scaling, with a curve that is fitted to counts.
 //!
 //! # Algorithm
 //! A few rounds of
@@ -221,8 +221,8 @@ impl<'a> Distances<'a> {
         self.has_extent(&curve).then_some(Law { curve, stretch, trust, scores })
     }
 
-    /// Distances and weights under a law of the links of `graph` among `members`, numbered by their places in that list; with a map of the
-    /// members, what is too long for it is doubted.
+    /// Distances and weights under a law of the links of `graph` among `members`, numbered by their places in that
+    /// list; with a map of the members, what is too long for it is doubted.
     pub fn inside(
         &self,
         law: &Law,
@@ -262,12 +262,9 @@ impl<'a> Distances<'a> {
         let (pairs, doubted): (Vec<Pair>, Vec<bool>) =
             self.pairs.pairs().par_iter().zip(&self.counts).map(measure).unzip();
         let doubted = doubted.iter().filter(|doubted| **doubted).count() as f64 / pairs.len() as f64;
-        Measured { pairs: Self::valid(self.pairs.objects(), pairs), doubted }
-    }
-
-    fn valid(landmarks: usize, pairs: Vec<Pair>) -> PairDistances {
-        PairDistances::new(landmarks, pairs)
-            .expect("distances of counts are finite and weights positive (bug in covimap)")
+        let pairs = PairDistances::new(self.pairs.objects(), pairs)
+            .expect("distances of counts are finite and weights positive (bug in covimap)");
+        Measured { pairs, doubted }
     }
 
     /// Whether most links have a length under a curve. They have none where all frequencies are about equal.

@@ -1,8 +1,8 @@
 //! Ranges: where the log tells how far landmarks were, the map becomes metric, and more exact.
 //!
-//! A range `r` of landmark i in step t is `s |x_i - y_t|` but for noise, with a scale `s` of the whole component, metres
-//! a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the start is
-//! the map that the sightings made, and the mean of what the step shows. Then, in turn,
+//! A range `r` of landmark i in step t is `s |x_i - y_t|` but for noise, with a scale `s` of the whole component,
+//! metres a map unit, and the place `y_t` of the step. Both are unknown, and so are the errors of the landmarks; the
+//! start is the map that the sightings made, and the mean of what the step shows. Then, in turn,
 //!
 //! - every place moves to where the ranges of its step fit best (Gauss and Newton);
 //! - on the map as it is, the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)

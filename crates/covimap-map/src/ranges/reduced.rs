@@ -1,8 +1,8 @@
 //! All landmarks at once: one step of Gauss and Newton, the places of the steps being solved for on the way.
 //!
 //! To first order a range that misses by `e` asks for `u'(dx - dy) = e`, `u` being the direction from the place to
-//! the landmark. For given moves `dx` of the landmarks the best move of a place is `A^-1 sum w u (u'dx - e)` with `A = sum w u u'` over
-//! its ranges. Put in, equations for the landmarks alone are left:
+//! the landmark. For given moves `dx` of the landmarks the best move of a place is `A^-1 sum w u (u'dx - e)` with `A =
+//! sum w u u'` over its ranges. Put in, equations for the landmarks alone are left:
 //!
 //! ```text
 //! sum w u (v - u' A^-1 sum w u v) = 0,    v = e - u'dx.
@@ -26,8 +26,8 @@ const LEFT: f64 = 1e-3;
 /// Share of the curvature of a place that is added to both axes: landmarks on a line leave it free across.
 const RIDGE: f64 = 1e-6;
 
-/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the last digit still needs a
-/// width.
+/// A standard deviation is at least this share of the median range: no sensor is more exact, and what is exact to the
+/// last digit still needs a width.
 const LEAST: f64 = 1e-3;
 
 /// Sets the noise to what the misses of a sweep tell, each made larger by what its own place took away from it.
@@ -120,8 +120,8 @@ impl<'a> Reduced<'a> {
         self.gather(along, stretch)
     }
 
-    /// For what each range and each edge asks for along its direction: what the landmarks are to do, less what the places
-    /// do themselves.
+    /// For what each range and each edge asks for along its direction: what the landmarks are to do, less what the
+    /// places do themselves.
     fn gather(&self, range: impl Fn(usize) -> f64 + Sync, edge: impl Fn(usize) -> f64) -> Vec<Point> {
         let sweep = self.sweep;
         let place_moves = |step: usize| {

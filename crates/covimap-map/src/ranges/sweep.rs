@@ -161,7 +161,8 @@ impl<'a> Sweep<'a> {
         add(middle, [c * x + s * y, s * x - c * y])
     }
 
-    /// What the ranges of a step cost from a place: `sum c^2 (e^2 / v) / (c^2 + e^2 / v)`, of which the weights are the slope.
+    /// What the ranges of a step cost from a place: `sum c^2 (e^2 / v) / (c^2 + e^2 / v)`, of which the weights are the
+    /// slope.
     fn cost(&self, step: usize, from: Point) -> f64 {
         let cost = |place: usize| {
             let miss = self.look_from(from, place).1;
