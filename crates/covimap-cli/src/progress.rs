@@ -219,9 +219,8 @@ fn unit(stage: Stage) -> &'static str {
         Stage::LocalMaps => "regions",
         Stage::Variants => "regions and pieces",
         Stage::Refine => "iterations at most",
-        Stage::Sensor => "components",
         Stage::Lift | Stage::Distances | Stage::Polish => "steps at most",
-        Stage::Regions | Stage::Stitch | Stage::Classical => "steps",
+        Stage::Regions | Stage::Stitch | Stage::Classical | Stage::Sensor => "steps",
     }
 }
 

@@ -8,7 +8,7 @@
 //! # References
 //! J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., 2006, algorithms 7.4 and 3.1.
 
-use crate::limited_memory::{Memory, dot};
+use crate::limited_memory::{Memory, dot, paired};
 use crate::{EmbedError, StopRule, Termination};
 
 /// Share of the value that a step must take away for the configuration to have moved far.
@@ -95,12 +95,12 @@ impl Descent {
                 }
             };
             self.age = Some(age + 1);
-            let downhill = here.gradient.iter().map(|g| -g).collect();
+            let downhill = paired(&here.gradient, &here.gradient, |g, _| -g);
             let direction = self.memory.apply(downhill, |v, _| objective.precondition(v));
             let mut gained = 0.0;
             if let Some((next, step)) = here.along(objective, &direction) {
                 gained = here.value - next.value;
-                let change = next.gradient.iter().zip(&here.gradient).map(|(a, b)| a - b).collect();
+                let change = paired(&next.gradient, &here.gradient, |a, b| a - b);
                 self.memory.remember(step, change);
                 here = next;
             }
@@ -132,10 +132,9 @@ impl Place {
         let slope = 2.0 * dot(direction, &self.gradient);
         let mut length = 1.0;
         for _ in 0..SHORTENINGS {
-            let step: Vec<f64> = direction.iter().map(|s| length * s).collect();
-            let next = Self::of(objective, self.x.iter().zip(&step).map(|(x, s)| x + s).collect());
+            let next = Self::of(objective, paired(&self.x, direction, |x, s| x + length * s));
             if next.value <= self.value + KEPT * length * slope {
-                return Some((next, step));
+                return Some((next, paired(direction, direction, |s, _| length * s)));
             }
             // The lowest point of the parabola through what is known.
             let lowest = -slope * length / (2.0 * (next.value - self.value - slope * length));

@@ -10,167 +10,8 @@
 //! A complete list with equal weights `w` needs no factor: `V = w (n I - 11')`, so that the
 //! centred solution is `Y / (w n)`.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side, Spec};
-
+use crate::cholesky::{Factored, LowerTriangle, Rounded};
 use crate::{EmbedError, PairDistances, Point};
-
-mod substitution;
-
-/// A symmetric positive definite sparse matrix with its Cholesky factor.
-///
-/// Factorisation and solves run on the calling thread: the parallel forms are slower at these
-/// sizes, and their results would depend on the thread count.
-pub(crate) struct Factored {
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<f64>,
-}
-
-/// Lower triangle by columns: ascending rows, the diagonal first.
-pub(crate) struct LowerTriangle {
-    pub starts: Vec<usize>,
-    pub rows: Vec<usize>,
-    pub values: Vec<f64>,
-}
-
-impl LowerTriangle {
-    fn order(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// `y = A x` for the symmetric matrix whose lower triangle this is.
-    pub fn times(&self, x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; x.len()];
-        for column in 0..self.order() {
-            for entry in self.starts[column]..self.starts[column + 1] {
-                let (row, value) = (self.rows[entry], self.values[entry]);
-                y[row] += value * x[column];
-                if row != column {
-                    y[column] += value * x[row];
-                }
-            }
-        }
-        y
-    }
-}
-
-impl Factored {
-    /// Largest relative residual of the probe solve that is taken for a sound factorisation.
-    const SOUND: f64 = 1e-6;
-
-    /// Factors `A = L L'` after an approximate minimum-degree ordering, and checks the factor on
-    /// a known solution.
-    pub fn new(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        Self::with_runs(matrix, SupernodalThreshold::AUTO)
-    }
-
-    /// As [`Factored::new`], in the form that [`Factored::solve_points`] takes.
-    pub fn for_points(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        // Any number of operations is above the threshold, zero too.
-        Self::with_runs(matrix, SupernodalThreshold(-1.0))
-    }
-
-    fn with_runs(matrix: &LowerTriangle, runs: SupernodalThreshold) -> Result<Self, EmbedError> {
-        let n = matrix.order();
-        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
-        let symbolic = factorize_symbolic_cholesky(
-            structure,
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams { supernodal_flop_ratio_threshold: runs, ..Default::default() },
-        )
-        .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: n })?;
-        let factored = Self::numeric(symbolic, Vec::new(), matrix)?;
-        factored.check(matrix)?;
-        Ok(factored)
-    }
-
-    /// Factors another matrix with the same places of entries and entries of like size, without ordering anew and
-    /// without a check.
-    pub fn refactor(self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        Self::numeric(self.symbolic, self.values, matrix)
-    }
-
-    /// The factor, in the memory of `values`, whatever they are.
-    fn numeric(
-        symbolic: SymbolicCholesky<usize>,
-        mut values: Vec<f64>,
-        matrix: &LowerTriangle,
-    ) -> Result<Self, EmbedError> {
-        let n = matrix.order();
-        let out_of_memory = EmbedError::OutOfMemory { what: "factoring a sparse matrix", order: n };
-        let more = symbolic.len_val().saturating_sub(values.len());
-        if values.try_reserve_exact(more).is_err() {
-            return Err(out_of_memory);
-        }
-        values.resize(symbolic.len_val(), 0.0);
-        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-        let Ok(mut memory) = MemBuffer::try_new(scratch) else { return Err(out_of_memory) };
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(structure, &matrix.values),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut memory),
-                Spec::default(),
-            )
-            .map_err(|_| EmbedError::Singular { order: n })?;
-        Ok(Self { symbolic, values })
-    }
-
-    fn check(&self, matrix: &LowerTriangle) -> Result<(), EmbedError> {
-        let n = matrix.order();
-        // A bounded, aperiodic probe: the fractional parts of multiples of the golden ratio.
-        let probe: Vec<f64> = (0..n).map(|k| (k as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
-        let wanted = matrix.times(&probe);
-        let mut solved = wanted.clone();
-        self.solve(&mut solved, 1);
-        let reached = matrix.times(&solved);
-        let largest =
-            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0f64, |most, value| most.max(value.abs()));
-        let miss = largest(&mut reached.iter().zip(&wanted).map(|(a, b)| a - b));
-        let size = largest(&mut wanted.iter().copied());
-        // Written so that a NaN fails the check.
-        if miss <= Self::SOUND * size { Ok(()) } else { Err(EmbedError::Singular { order: n }) }
-    }
-
-    /// Replaces the `columns` columns of `rhs` (column-major) by the solutions.
-    pub fn solve(&self, rhs: &mut [f64], columns: usize) {
-        let n = self.symbolic.nrows();
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, n, columns),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
-    }
-
-    /// The solution for a right-hand side of a point a row.
-    pub fn solve_points(&self, y: &[Point]) -> Vec<Point> {
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else {
-            // A matrix of order 0.
-            return y.to_vec();
-        };
-        let order = self.symbolic.perm().map(|order| order.arrays().0);
-        let object = |row: usize| order.map_or(row, |order| order[row]);
-        let mut rows: Vec<Point> = (0..y.len()).map(|row| y[object(row)]).collect();
-        substitution::substitute(symbolic, &self.values, &mut rows);
-        let mut solution = vec![[0.0; 2]; y.len()];
-        rows.into_iter().enumerate().for_each(|(row, point)| solution[object(row)] = point);
-        solution
-    }
-}
 
 /// `V` of a weighted pair list, ready for solves, with the components that it falls into.
 pub(crate) struct Laplacian {
@@ -186,7 +27,9 @@ enum Inverse {
     /// By this factor: all pairs weigh the same.
     Factor(f64),
     /// By the factor of the tied Laplacian.
-    Factored(Box<Factored>),
+    Factored(Factored),
+    /// By the same, in single precision.
+    Rounded(Rounded),
 }
 
 impl Laplacian {
@@ -208,8 +51,8 @@ impl Laplacian {
     /// Factors the Laplacian of `n` objects and weighted edges `(i, j, w)`, `i < j`, ascending.
     pub fn new(n: usize, edges: &[(u32, u32, f64)]) -> Result<Self, EmbedError> {
         let (component, sizes) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
-        let factored = Factored::for_points(&tied_laplacian(n, edges, &component))?;
-        Ok(Self { inverse: Inverse::Factored(Box::new(factored)), component, sizes })
+        let factored = Factored::new(&tied_laplacian(n, edges, &component))?;
+        Ok(Self { inverse: Inverse::Factored(factored), component, sizes })
     }
 
     /// Component of each object, numbered by its first object.
@@ -222,15 +65,38 @@ impl Laplacian {
         self.sizes.len()
     }
 
+    /// The same with rough solutions, as for a preconditioner.
+    pub fn rounded(self) -> Self {
+        match self.inverse {
+            Inverse::Factored(factored) => Self { inverse: Inverse::Rounded(factored.rounded()), ..self },
+            _ => self,
+        }
+    }
+
+    /// The factor of the tied Laplacian, if there is one in double precision.
+    pub fn factored(&self) -> Option<&Factored> {
+        match &self.inverse {
+            Inverse::Factored(factored) => Some(factored),
+            _ => None,
+        }
+    }
+
     /// Solves `V X = Y` for a `Y` that sums to zero in every component; the solution is centred
     /// at the origin in every component.
     pub fn solve(&self, y: &[Point]) -> Vec<Point> {
-        let mut solution = match &self.inverse {
-            Inverse::Factor(factor) => y.iter().map(|point| point.map(|value| factor * value)).collect(),
-            Inverse::Factored(factored) => factored.solve_points(y),
-        };
-        self.centre(&mut solution);
+        let mut solution = y.to_vec();
+        self.solve_in_place(&mut solution);
         solution
+    }
+
+    /// The same in the place of `y`.
+    pub fn solve_in_place(&self, y: &mut [Point]) {
+        match &self.inverse {
+            Inverse::Factor(factor) => y.as_flattened_mut().iter_mut().for_each(|x| *x *= factor),
+            Inverse::Factored(factored) => factored.solve(y),
+            Inverse::Rounded(rounded) => rounded.solve(y),
+        }
+        self.centre(y);
     }
 
     /// Moves every component to the origin.

@@ -5,6 +5,7 @@
 //! is not listed is *unknown*, which is not the same as far away.
 
 mod anchored;
+mod cholesky;
 mod classical;
 mod closure;
 mod descent;
@@ -38,6 +39,7 @@ mod starts;
 mod stress;
 mod synchronise;
 mod unfold;
+mod wide;
 
 pub use anchored::anchored_while;
 pub use classical::{ClassicalScaling, classical_scaling};
@@ -50,7 +52,7 @@ pub use distance_rows::{DistanceRows, ShortestPaths};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use fastmap::fastmap;
-pub use flexibility::flexibility;
+pub use flexibility::{flexibility, flexibility_steps};
 pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
 pub use lift::{Apart, Bound, LIFT_STEPS, lift};
 pub use newton::{Newton, newton};

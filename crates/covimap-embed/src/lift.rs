@@ -36,6 +36,7 @@ use rayon::prelude::*;
 use crate::descent::{Descent, Objective, Reached};
 use crate::laplacian::Laplacian;
 use crate::solve::check_start;
+use crate::wide::wide;
 use crate::{EmbedError, PairDistances, Point, StopRule, Termination};
 
 mod near;
@@ -106,16 +107,14 @@ pub fn lift(
     if pairs.pairs().is_empty() {
         return Ok(start.to_vec());
     }
-    let mut folded = Unfolding {
-        links: Springs::of_pairs(pairs),
-        bounds: Springs::none(start.len()),
-        laplacian: Laplacian::of(pairs)?,
-        press: Press::new(pairs),
-    };
+    let laplacian = Laplacian::of(pairs)?;
+    let press = Press::new(pairs, &laplacian, PRESS[0])?;
+    let (links, bounds) = (Springs::of_pairs(pairs), Springs::none(start.len()));
+    let mut folded = Unfolding { links, bounds, laplacian: laplacian.rounded(), press };
     let mut x = raised(pairs, start, seed);
     let rise = (PRESS[1] / PRESS[0]).powf(1.0 / (LEVELS - FREE) as f64);
     for level in 1..=LEVELS {
-        folded.press.by(PRESS[0] * rise.powi(level.saturating_sub(FREE) as i32))?;
+        folded.press = folded.press.by(PRESS[0] * rise.powi(level.saturating_sub(FREE) as i32))?;
         folded.bounds = too_near(x.as_chunks().0, &folded.links, apart);
         let Reached { x: lower, termination, .. } =
             Descent::new().run(&mut folded, x, AT_A_LEVEL, 0.0, &mut go_on)?;
@@ -146,6 +145,7 @@ struct Unfolding {
 
 impl Unfolding {
     /// The share of one object in the value, and in half of the gradient.
+    #[inline(always)]
     fn share(&self, x: &[Lifted], own: usize) -> (f64, Lifted) {
         let here = x[own];
         let (mut value, mut force) = self.press.share(own, here);
@@ -178,8 +178,22 @@ impl Objective for Unfolding {
 
     fn at(&self, x: &[f64]) -> (f64, Vec<f64>) {
         let x: &[Lifted] = x.as_chunks().0;
-        let shares = (0..x.len()).into_par_iter().with_min_len(OBJECTS).map(|own| self.share(x, own));
-        let (values, gradient): (Vec<f64>, Vec<Lifted>) = shares.unzip();
+        let mut gradient = vec![[0.0; 4]; x.len()];
+        let shares = |(first, forces): (usize, &mut [Lifted])| {
+            wide(
+                #[inline(always)]
+                || {
+                    let mut sum = 0.0;
+                    for (own, force) in (first * OBJECTS..).zip(forces) {
+                        let value;
+                        (value, *force) = self.share(x, own);
+                        sum += value;
+                    }
+                    sum
+                },
+            )
+        };
+        let values: Vec<f64> = gradient.par_chunks_mut(OBJECTS).enumerate().map(shares).collect();
         (values.iter().sum(), gradient.into_flattened())
     }
 
@@ -189,12 +203,15 @@ impl Objective for Unfolding {
 
     fn precondition(&self, v: &mut [f64]) {
         let v: &mut [Lifted] = v.as_chunks_mut().0;
-        let [flat, up] = [0, 2].map(|k| v.iter().map(|v| [v[k], v[k + 1]]).collect::<Vec<Point>>());
-        let (flat, up) = rayon::join(|| self.laplacian.solve(&flat), || self.press.solve(&up));
-        v.iter_mut().zip(flat.iter().zip(&up)).for_each(|(v, (&[x, y], &[z, w]))| *v = [x, y, z, w]);
+        let half = |k: usize| v.par_iter().with_min_len(OBJECTS).map(move |v| [v[k], v[k + 1]]).collect();
+        let (mut flat, mut up): (Vec<Point>, Vec<Point>) = (half(0), half(2));
+        rayon::join(|| self.laplacian.solve_in_place(&mut flat), || self.press.solve(&mut up));
+        let both = flat.par_iter().zip(&up);
+        v.par_iter_mut().zip(both).for_each(|(v, (&[x, y], &[z, w]))| *v = [x, y, z, w]);
     }
 }
 
+#[inline(always)]
 fn length(a: Lifted, b: Lifted) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

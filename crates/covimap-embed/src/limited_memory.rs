@@ -7,10 +7,15 @@
 
 use std::collections::VecDeque;
 
+use rayon::prelude::*;
+
 /// Steps that are remembered.
 pub(crate) const REMEMBERED: usize = 8;
 /// Steps with less curvature than this share of `|step| |change|` are not remembered.
 const CURVED: f64 = 1e-10;
+
+/// Numbers of one parallel task.
+const CHUNK: usize = 1 << 15;
 
 /// The last steps, each with the change of the gradient that it brought; the newest last.
 #[derive(Default)]
@@ -69,19 +74,36 @@ impl Memory {
     }
 }
 
-/// Inner product, even and odd entries apart and each in order: two sums at a time.
+/// Inner product: chunk by chunk, and within a chunk in four interleaved sums that need not wait for each other.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (a.as_chunks::<2>(), b.as_chunks::<2>());
-    let sum = a.0.iter().zip(b.0).fold([0.0; 2], |sum, (a, b)| [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]);
-    let rest = a.1.iter().zip(b.1).map(|(a, b)| a * b).sum::<f64>();
-    sum[0] + sum[1] + rest
+    let of_chunk = |(a, b): (&[f64], &[f64])| {
+        let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+        let mut sums = [0.0; 4];
+        for (a, b) in a.iter().zip(b) {
+            sums = std::array::from_fn(|k| sums[k] + a[k] * b[k]);
+        }
+        let rest = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum::<f64>();
+        (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+    };
+    if a.len() <= CHUNK {
+        return of_chunk((a, b));
+    }
+    let sums: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(of_chunk).collect();
+    sums.iter().sum()
+}
+
+/// `f(a_k, b_k)` for all `k`.
+pub(crate) fn paired(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -> Vec<f64> {
+    a.par_iter().zip(b).with_min_len(CHUNK).map(|(&a, &b)| f(a, b)).collect()
 }
 
 /// `a += factor b`.
 pub(crate) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
-    for (a, b) in a.iter_mut().zip(b) {
-        *a += factor * b;
+    let add = |(a, b): (&mut [f64], &[f64])| a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * b);
+    if a.len() <= CHUNK {
+        return add((a, b));
     }
+    a.par_chunks_mut(CHUNK).zip(b.par_chunks(CHUNK)).for_each(add);
 }
 
 #[cfg(test)]

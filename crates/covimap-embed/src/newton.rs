@@ -118,7 +118,7 @@ impl Objective for Stress<'_> {
     }
 
     fn precondition(&self, v: &mut [f64]) {
-        self.curvature.system.solve(v);
+        self.curvature.system.solve(v.as_chunks_mut::<1>().0);
     }
 }
 

@@ -99,18 +99,19 @@ impl LinkGraph {
     /// The part of the graph on `members` (ascending), renumbered by their places in it.
     #[must_use]
     pub fn restricted_to(&self, members: &[u32]) -> Self {
-        let rows = members.iter().map(|&member| {
+        let mut part = Self { starts: vec![0], links: Vec::new() };
+        for &member in members {
             // Both lists ascend: walk them together.
             let mut place = 0;
-            self.of(member)
-                .iter()
-                .filter_map(|link| {
-                    place += members[place..].partition_point(|&other| other < link.to);
-                    (members.get(place) == Some(&link.to)).then_some(Link { to: place as u32, ..*link })
-                })
-                .collect()
-        });
-        Self::from_rows(rows.collect())
+            for link in self.of(member) {
+                place += members[place..].partition_point(|&other| other < link.to);
+                if members.get(place) == Some(&link.to) {
+                    part.links.push(Link { to: place as u32, ..*link });
+                }
+            }
+            part.starts.push(part.links.len());
+        }
+        part
     }
 
     /// The links as a weighted scaling problem.

@@ -27,7 +27,8 @@ pub enum Stage {
     Refine,
     /// The paper's dense scaling.
     Classical,
-    /// Learning the sensor that the finished map and the log imply; counted in components.
+    /// Learning the sensor that the finished map and the log imply; counted in sets of sightings, and in what takes as
+    /// long.
     Sensor,
 }
 

@@ -72,34 +72,3 @@ proptest! {
         }
     }
 }
-
-/// Lower triangle of `[[a, -1, 0], [-1, 3, -1], [0, -1, 2]]`.
-fn chain(a: f64) -> LowerTriangle {
-    LowerTriangle {
-        starts: vec![0, 2, 4, 5],
-        rows: vec![0, 1, 1, 2, 2],
-        values: vec![a, -1.0, 3.0, -1.0, 2.0],
-    }
-}
-
-#[test]
-fn other_values_in_the_same_places_are_factored_anew() {
-    let factored = Factored::new(&chain(4.0)).unwrap().refactor(&chain(1.0)).unwrap();
-    // [[1, -1, 0], [-1, 3, -1], [0, -1, 2]] (1, 2, 3)' = (-1, 2, 4)'.
-    assert_eq!(chain(1.0).times(&[1.0, 2.0, 3.0]), [-1.0, 2.0, 4.0]);
-    let mut solution = [-1.0, 2.0, 4.0];
-    factored.solve(&mut solution, 1);
-    for (got, wanted) in solution.iter().zip([1.0, 2.0, 3.0]) {
-        assert!((got - wanted).abs() < 1e-14, "{solution:?}");
-    }
-}
-
-#[test]
-fn a_matrix_that_is_not_positive_definite_is_refused() {
-    // The determinant 6 a - a - 2 = 5 a - 2 is zero at 0.4 and negative below.
-    for a in [0.3, -1.0, f64::NAN] {
-        assert!(matches!(Factored::new(&chain(a)), Err(EmbedError::Singular { order: 3 })), "{a}");
-        let refactored = Factored::new(&chain(4.0)).unwrap().refactor(&chain(a));
-        assert!(matches!(refactored, Err(EmbedError::Singular { order: 3 })), "{a}");
-    }
-}

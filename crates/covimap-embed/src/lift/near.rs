@@ -41,5 +41,5 @@ pub(super) fn too_near(x: &[Lifted], links: &Springs, apart: &impl Apart) -> Spr
         row
     };
     let rows: Vec<Vec<Spring>> = (0..x.len()).into_par_iter().map(row).collect();
-    Springs::of_rows(rows.into_iter())
+    Springs::of_rows(rows.iter().map(Vec::len).sum(), rows.into_iter())
 }

@@ -1,7 +1,8 @@
 //! The press: what drives objects back into the plane.
 
 use super::Lifted;
-use crate::laplacian::{Factored, LowerTriangle, components, tied_laplacian};
+use crate::cholesky::{Factored, LowerTriangle, Rounded};
+use crate::laplacian::{Laplacian, components, tied_laplacian};
 use crate::{EmbedError, PairDistances, Point};
 
 /// The last sum of eq. (1), and `V + mu diag(w_i)` with its factor.
@@ -9,13 +10,14 @@ pub(super) struct Press {
     mu: f64,
     /// `w_i`.
     weights: Vec<f64>,
-    laplacian: LowerTriangle,
-    factored: Option<Factored>,
+    matrix: LowerTriangle,
+    pub(super) factored: Factored,
+    rounded: Rounded,
 }
 
 impl Press {
-    /// There is no press as yet.
-    pub fn new(pairs: &PairDistances) -> Self {
+    /// A press `mu`. `laplacian` is that of the same pairs, whose order the factor takes over.
+    pub fn new(pairs: &PairDistances, laplacian: &Laplacian, mu: f64) -> Result<Self, EmbedError> {
         let n = pairs.objects();
         let edges: Vec<_> = pairs.pairs().iter().map(|pair| (pair.i, pair.j, pair.weight)).collect();
         let (component, _) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
@@ -24,33 +26,43 @@ impl Press {
             weights[i as usize] += weight;
             weights[j as usize] += weight;
         }
-        Self { mu: 0.0, weights, laplacian: tied_laplacian(n, &edges, &component), factored: None }
+        let mut matrix = tied_laplacian(n, &edges, &component);
+        press(&mut matrix, &weights, mu);
+        let factored = match laplacian.factored() {
+            Some(factored) => factored.another(&matrix),
+            None => Factored::new(&matrix),
+        }?;
+        let rounded = factored.rounded();
+        Ok(Self { mu, weights, matrix, factored, rounded })
     }
 
-    /// Sets the press.
-    pub fn by(&mut self, mu: f64) -> Result<(), EmbedError> {
+    /// The same with another press.
+    pub fn by(mut self, mu: f64) -> Result<Self, EmbedError> {
         if mu == self.mu {
-            return Ok(());
+            return Ok(self);
         }
-        for (&first, weight) in self.laplacian.starts.iter().zip(&self.weights) {
-            self.laplacian.values[first] += (mu - self.mu) * weight;
-        }
-        self.mu = mu;
-        self.factored = Some(match self.factored.take() {
-            None => Factored::for_points(&self.laplacian),
-            Some(last) => last.refactor(&self.laplacian),
-        }?);
-        Ok(())
+        press(&mut self.matrix, &self.weights, mu - self.mu);
+        let factored = self.factored.refactor(&self.matrix)?;
+        let rounded = factored.rounded();
+        Ok(Self { mu, factored, rounded, ..self })
     }
 
     /// What an object adds to the value, and to half of the gradient.
+    #[inline(always)]
     pub fn share(&self, own: usize, [_, _, u, v]: Lifted) -> (f64, Lifted) {
         let press = self.mu * self.weights[own];
         (press * (u * u + v * v), [0.0, 0.0, press * u, press * v])
     }
 
-    /// `(V + mu diag(w_i))^-1 y`.
-    pub fn solve(&self, y: &[Point]) -> Vec<Point> {
-        self.factored.as_ref().expect("pressed before it is solved (bug in covimap)").solve_points(y)
+    /// Replaces `y` by `(V + mu diag(w_i))^-1 y`, roughly.
+    pub fn solve(&self, y: &mut [Point]) {
+        self.rounded.solve(y);
+    }
+}
+
+/// Adds `mu diag(w_i)`.
+fn press(matrix: &mut LowerTriangle, weights: &[f64], mu: f64) {
+    for (&first, weight) in matrix.starts.iter().zip(weights) {
+        matrix.values[first] += mu * weight;
     }
 }

@@ -33,12 +33,12 @@ impl Springs {
             };
             incidence.of(own).iter().map(spring)
         };
-        Self::of_rows((0..pairs.objects()).map(row))
+        Self::of_rows(2 * pairs.pairs().len(), (0..pairs.objects()).map(row))
     }
 
-    /// Of a row an object.
-    pub fn of_rows(rows: impl Iterator<Item = impl IntoIterator<Item = Spring>>) -> Self {
-        let mut all = Self { starts: vec![0], springs: Vec::new() };
+    /// Of a row an object, with so many springs in all.
+    pub fn of_rows(springs: usize, rows: impl Iterator<Item = impl IntoIterator<Item = Spring>>) -> Self {
+        let mut all = Self { starts: vec![0], springs: Vec::with_capacity(springs) };
         for row in rows {
             all.springs.extend(row);
             all.starts.push(all.springs.len());
@@ -46,6 +46,7 @@ impl Springs {
         all
     }
 
+    #[inline(always)]
     pub fn of(&self, object: usize) -> &[Spring] {
         &self.springs[self.starts[object]..self.starts[object + 1]]
     }

@@ -1,6 +1,7 @@
 //! The damped second derivative of the stress, eq. (1) of the parent module, and its factor.
 
-use crate::laplacian::{Factored, LowerTriangle, components};
+use crate::cholesky::{Elimination, Factored, LowerTriangle};
+use crate::laplacian::components;
 use crate::{EmbedError, PairDistances, Point};
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
@@ -57,16 +58,20 @@ impl NormalEquations {
     ) -> Result<(), EmbedError> {
         self.assemble(pairs, points, damping);
         self.factored = Some(match self.factored.take() {
-            None => Factored::new(&self.matrix),
+            None => {
+                // Both coordinates of an object have the same neighbours: the order of objects is good for them.
+                let edges = pairs.pairs().iter().map(|pair| (pair.i, pair.j));
+                let objects = Elimination::of(points.len(), edges)?;
+                Factored::eliminated(&self.matrix, objects.in_blocks(2))
+            }
             Some(last) => last.refactor(&self.matrix),
         }?);
         Ok(())
     }
 
-    /// Replaces right-hand sides, one after the other, by the solutions under the last factor.
-    pub fn solve(&self, sides: &mut [f64]) {
-        let factored = self.factored.as_ref().expect("factored before it is solved (bug in covimap)");
-        factored.solve(sides, sides.len() / (2 * self.tied.len()).max(1));
+    /// Replaces `K` right-hand sides, an unknown a row, by the solutions under the last factor.
+    pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
+        self.factored.as_ref().expect("factored before it is solved (bug in covimap)").solve(rows);
     }
 
     /// Fills the matrix.

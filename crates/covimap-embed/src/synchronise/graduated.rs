@@ -21,7 +21,8 @@
 
 use super::bridges::bridges;
 use crate::EmbedError;
-use crate::laplacian::{Factored, tied_laplacian};
+use crate::cholesky::Factored;
+use crate::laplacian::tied_laplacian;
 
 /// Steps before the fit stands as it is.
 const MAX_STEPS: usize = 60;
@@ -209,12 +210,12 @@ impl System {
         period: Option<f64>,
     ) -> Result<(), EmbedError> {
         let mut pairs: Vec<(u32, u32, f64)> = self.pairs.iter().map(|&(i, j)| (i, j, 0.0)).collect();
-        let mut rhs = vec![0.0; K * self.nodes];
+        let mut rhs = vec![[0.0; K]; self.nodes];
         for ((edge, r), &pair) in edges.iter().zip(residuals(values, edges, period)).zip(&self.pair_of) {
             pairs[pair].2 += edge.weight;
             for (k, r) in r.iter().enumerate() {
-                rhs[k * self.nodes + edge.b as usize] += edge.weight * r;
-                rhs[k * self.nodes + edge.a as usize] -= edge.weight * r;
+                rhs[edge.b as usize][k] += edge.weight * r;
+                rhs[edge.a as usize][k] -= edge.weight * r;
             }
         }
         let matrix = tied_laplacian(self.nodes, &pairs, &vec![0; self.nodes]);
@@ -222,10 +223,10 @@ impl System {
             None => Factored::new(&matrix)?,
             Some(factored) => factored.refactor(&matrix)?,
         };
-        factored.solve(&mut rhs, K);
+        factored.solve(&mut rhs);
         self.factored = Some(factored);
-        for (node, value) in values.iter_mut().enumerate() {
-            value.iter_mut().enumerate().for_each(|(k, x)| *x += rhs[k * self.nodes + node]);
+        for (value, step) in values.iter_mut().zip(rhs) {
+            value.iter_mut().zip(step).for_each(|(x, step)| *x += step);
         }
         Ok(())
     }

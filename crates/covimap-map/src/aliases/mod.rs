@@ -101,21 +101,44 @@ impl Sightings<'_> {
         parts
     }
 
-    /// Whether a bundle can be reached from the others without the landmark, but only by a long way.
+    /// Whether a bundle can be reached from the others without the landmark, but only by a long way. The search goes
+    /// from both ends, so that where there is no way the smaller side tells.
     fn are_apart(&self, without: LandmarkId, bundle: &[u32], others: &[Vec<u32>]) -> bool {
-        let mut known: FxHashSet<u32> = bundle.iter().copied().collect();
-        known.insert(without.0);
-        let mut front = bundle.to_vec();
+        let mut ends = [
+            Reached::from(bundle.iter().copied(), without),
+            Reached::from(others.iter().flatten().copied(), without),
+        ];
         let mut steps = 0;
-        while !front.is_empty() {
-            if front.iter().any(|member| others.iter().any(|other| other.binary_search(member).is_ok())) {
+        while ends.iter().all(|end| !end.front.is_empty()) {
+            let nearer = usize::from(ends[1].front.len() < ends[0].front.len());
+            ends[nearer].step(|member| self.partners(member));
+            steps += 1;
+            let [a, b] = &ends;
+            let (stepped, other) = if nearer == 0 { (a, b) } else { (b, a) };
+            if stepped.front.iter().any(|member| other.known.contains(member)) {
                 return steps >= APART;
             }
-            let next = front.iter().flat_map(|&member| self.partners(LandmarkId(member)));
-            front = next.filter(|&member| known.insert(member)).collect();
-            steps += 1;
         }
         false
+    }
+}
+
+/// What a search has reached.
+struct Reached {
+    known: FxHashSet<u32>,
+    /// What the last step has reached.
+    front: Vec<u32>,
+}
+
+impl Reached {
+    fn from(start: impl Iterator<Item = u32>, without: LandmarkId) -> Self {
+        let front: Vec<u32> = start.collect();
+        Self { known: front.iter().copied().chain([without.0]).collect(), front }
+    }
+
+    fn step<P: Iterator<Item = u32>>(&mut self, partners: impl Fn(LandmarkId) -> P) {
+        let next = self.front.iter().flat_map(|&member| partners(LandmarkId(member)));
+        self.front = next.filter(|&member| self.known.insert(member)).collect();
     }
 }
 

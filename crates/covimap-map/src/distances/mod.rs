@@ -37,6 +37,7 @@ mod steps;
 mod weights;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use covimap_embed::{
     Apart, Bound, DistanceCurve, DistanceFamily, DistanceFunction, Embedding, Pair, PairDistances, Point,
@@ -65,6 +66,8 @@ pub(crate) const UNFOLDED_ROUNDS: usize = 3;
 const LINKS_A_LANDMARK: usize = 3;
 /// Percentage of the links that no bound of unlinked landmarks exceeds.
 const NEARLY_ALL: usize = 95;
+/// Bounds of unlinked landmarks that are tabulated: those of landmarks of so many steps, together.
+const TABULATED: u32 = 1 << 12;
 /// A pair that keeps less of its weight is doubted.
 const HALF: f64 = 0.5;
 
@@ -94,6 +97,8 @@ pub struct DistanceReport {
 pub(crate) struct Distances<'a> {
     /// The links with the distances of the fixed logarithm.
     pairs: &'a PairDistances,
+    /// Where the pairs of each landmark with later ones start, and at last their number.
+    starts: Vec<usize>,
     counts: Vec<PairCount>,
     /// Steps that show each landmark.
     sightings: Vec<u32>,
@@ -123,6 +128,8 @@ pub(crate) struct Measured {
 pub(crate) struct Unseen<'a> {
     law: &'a Law,
     sightings: Cow<'a, [u32]>,
+    /// By the number of steps that show either landmark, as far as it goes.
+    bounds: Arc<[Bound]>,
     longest: f64,
 }
 
@@ -130,15 +137,21 @@ impl Unseen<'_> {
     /// The same of some landmarks, numbered by their places in the list.
     pub fn among(&self, members: &[u32]) -> Self {
         let sightings = members.iter().map(|&member| self.sightings[member as usize]).collect();
-        Self { sightings, ..*self }
+        Self { sightings, bounds: Arc::clone(&self.bounds), ..*self }
     }
+}
+
+/// The bound that a law sets to landmarks of which `either` steps show one and none shows both.
+fn apart(law: &Law, either: u32, longest: f64) -> Bound {
+    let (distance, weight, _) = law.measure(PairCount { together: 0, either }, f64::INFINITY);
+    Bound { distance: distance.min(longest), weight }
 }
 
 impl Apart for Unseen<'_> {
     fn bound(&self, i: u32, j: u32) -> Bound {
         let either = self.sightings[i as usize] + self.sightings[j as usize];
-        let (distance, weight, _) = self.law.measure(PairCount { together: 0, either }, f64::INFINITY);
-        Bound { distance: distance.min(self.longest), weight }
+        let known = self.bounds.get(either as usize).copied();
+        known.unwrap_or_else(|| apart(self.law, either, self.longest))
     }
 
     fn longest(&self) -> f64 {
@@ -172,7 +185,13 @@ impl<'a> Distances<'a> {
         let sample = Sample::draw(pairs, steps, seed);
         let repetition = sample.repetition();
         let sightings = members.iter().map(|&member| counts.sightings()[member as usize]).collect();
-        Some(Self { pairs, counts: counts::of_links(graph, counts, members), sightings, sample, repetition })
+        let mut starts = vec![0; graph.landmarks() + 1];
+        pairs.pairs().iter().for_each(|pair| starts[pair.i as usize + 1] += 1);
+        for i in 0..graph.landmarks() {
+            starts[i + 1] += starts[i];
+        }
+        let counts = counts::of_links(graph, counts, members);
+        Some(Self { pairs, starts, counts, sightings, sample, repetition })
     }
 
     /// The law that local maps ask for: in them no wrong turn of the whole makes distances wrong.
@@ -230,11 +249,12 @@ impl<'a> Distances<'a> {
         members: &[u32],
         map: Option<&[Point]>,
     ) -> PairDistances {
-        let pairs = self.pairs.pairs();
         graph.restricted_to(members).to_pairs_with(|i, j| {
-            let ends = (members[i as usize], members[j as usize]);
-            let link = pairs.binary_search_by_key(&ends, |pair| (pair.i, pair.j));
-            let link = link.expect("links of regions are links of the graph (bug in covimap)");
+            let [own, other] = [i, j].map(|place| members[place as usize]);
+            let first = self.starts[own as usize];
+            let of_own = &self.pairs.pairs()[first..self.starts[own as usize + 1]];
+            let place = of_own.binary_search_by_key(&other, |pair| pair.j);
+            let link = first + place.expect("links of regions are links of the graph (bug in covimap)");
             let in_map = map.map_or(f64::INFINITY, |points| length(points, [i, j]));
             let (distance, weight, _) = law.measure(self.counts[link], in_map);
             (distance, weight)
@@ -249,7 +269,8 @@ impl<'a> Distances<'a> {
             sampled.map(|count| law.stretch * law.curve.distance(count.frequency())).collect();
         lengths.sort_unstable_by(f64::total_cmp);
         let longest = lengths[(lengths.len() - 1) * NEARLY_ALL / 100];
-        Unseen { law, sightings: Cow::Borrowed(&self.sightings), longest }
+        let bounds = (0..TABULATED).map(|either| apart(law, either, longest)).collect();
+        Unseen { law, sightings: Cow::Borrowed(&self.sightings), bounds, longest }
     }
 
     /// Distances and weights of the links under a law; with a map, seen from that.

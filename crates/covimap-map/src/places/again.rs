@@ -28,14 +28,14 @@ pub(crate) fn refine_some(
     observer: &dyn Observer,
 ) -> Result<Again, MapError> {
     let neighbours = Neighbours::new(graph);
-    let mut scores = landmark_scores(&neighbours, sets, &model, observer)?;
+    let mut scores = landmark_scores(&neighbours, sets, &model, |_| (), observer)?;
     for _ in 0..iterations {
         let moved = model.move_landmarks(&scores, |landmark| free[landmark]);
         observer.advanced(1);
         if moved < STILL {
             break;
         }
-        scores = landmark_scores(&neighbours, sets, &model, observer)?;
+        scores = landmark_scores(&neighbours, sets, &model, |_| (), observer)?;
     }
     let deviation = scores.iter().map(|scores| scores.deviation(model.sensor.range)).collect();
     Ok(Again { points: model.points, detectability: model.detectability, deviation })

@@ -53,7 +53,7 @@ use rayon::prelude::*;
 
 use crate::{LinkGraph, MapError, Observer};
 pub(crate) use again::{Again, refine_some};
-pub(crate) use observe::observe;
+pub(crate) use observe::{observe, sets_observed};
 use posterior::{Neighbours, Posterior, Workspace};
 use scoring::{ScoreBoard, Scores};
 use sensor::FALSE_SIGHTING;
@@ -99,7 +99,7 @@ pub(crate) fn refine(
     let neighbours = Neighbours::new(graph);
     let mut model = fit_sensor(graph, &neighbours, sets, start);
     for _ in 0..iterations {
-        let scores = landmark_scores(&neighbours, sets, &model, observer)?;
+        let scores = landmark_scores(&neighbours, sets, &model, |_| (), observer)?;
         let moved = model.move_landmarks(&scores, |_| true);
         model.sensor = sensor_scores(&neighbours, sets, &model).improve(model.sensor, false);
         observer.advanced(1);
@@ -179,11 +179,12 @@ fn sensor_scores(neighbours: &Neighbours, sets: &SeenSets, model: &Model) -> Sen
     scores
 }
 
-/// Scores of all landmarks under the present model, over all sets.
+/// Scores of all landmarks under the present model, over all sets; `done` is told how many more of these are.
 fn landmark_scores(
     neighbours: &Neighbours,
     sets: &SeenSets,
     model: &Model,
+    done: impl Fn(u64),
     observer: &dyn Observer,
 ) -> Result<Vec<Scores>, MapError> {
     let n = neighbours.landmarks();
@@ -194,7 +195,8 @@ fn landmark_scores(
         if observer.interrupted() {
             return Err(MapError::Interrupted);
         }
-        let scored: Vec<_> = (wave..sets.len().min(wave + CHUNK * WAVE))
+        let end = sets.len().min(wave + CHUNK * WAVE);
+        let scored: Vec<_> = (wave..end)
             .into_par_iter()
             .step_by(CHUNK)
             .map(|first| {
@@ -213,6 +215,7 @@ fn landmark_scores(
         for (landmark, scores) in scored.into_iter().flatten() {
             landmarks[landmark as usize].add(&scores, 1.0);
         }
+        done((end - wave) as u64);
     }
     Ok(landmarks)
 }

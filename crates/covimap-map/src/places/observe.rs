@@ -23,7 +23,13 @@ pub(crate) struct Observed {
     pub deviation: Vec<f64>,
 }
 
-/// Fits the sensor to the final positions of a connected graph of at least three landmarks.
+/// How many sets [`observe`] looks at.
+pub(crate) fn sets_observed(sets: &SeenSets, landmarks: usize) -> usize {
+    sets.sampled(SETS_PER_LANDMARK * landmarks)
+}
+
+/// Fits the sensor to the final positions of a connected graph of at least three landmarks. The observer is told of the
+/// sets, [`sets_observed`].
 pub(crate) fn observe(
     graph: &LinkGraph,
     sets: &SeenSets,
@@ -33,7 +39,7 @@ pub(crate) fn observe(
     let sets = &sets.sample(SETS_PER_LANDMARK * points.len());
     let neighbours = &Neighbours::new(graph);
     let mut model = fit_sensor(graph, neighbours, sets, points.to_vec());
-    let scores = landmark_scores(neighbours, sets, &model, observer)?;
+    let scores = landmark_scores(neighbours, sets, &model, |sets| observer.advanced(sets), observer)?;
     for (p, scores) in model.detectability.iter_mut().zip(&scores) {
         *p = scores.improved_detectability(*p, model.sensor.detectability);
     }

@@ -65,7 +65,7 @@ impl SeenSets {
 
     /// At most about `most` of the sets, evenly spread; each stands for those left out after it.
     pub fn sample(&self, most: usize) -> Self {
-        let stride = self.len().div_ceil(most.max(1)).max(1);
+        let stride = self.stride(most);
         let mut sample = Self { starts: vec![0], seen: Vec::new(), times: Vec::new() };
         for first in (0..self.len()).step_by(stride) {
             sample.seen.extend_from_slice(self.seen(first));
@@ -73,6 +73,15 @@ impl SeenSets {
             sample.times.push(self.times[first..self.len().min(first + stride)].iter().sum());
         }
         sample
+    }
+
+    /// How many sets [`SeenSets::sample`] has.
+    pub fn sampled(&self, most: usize) -> usize {
+        self.len().div_ceil(self.stride(most))
+    }
+
+    fn stride(&self, most: usize) -> usize {
+        self.len().div_ceil(most.max(1)).max(1)
     }
 
     /// Number of different sets.

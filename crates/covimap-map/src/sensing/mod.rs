@@ -15,7 +15,7 @@ mod warp;
 
 use covimap_embed::Point;
 
-use crate::places::{SeenSets, observe};
+use crate::places::{SeenSets, observe, sets_observed};
 use crate::{CoVisibility, LandmarkId, LinkGraph, MapError, Observer, PlacedLandmark, Stage};
 
 /// The sensor of one component, lengths in map units.
@@ -173,7 +173,8 @@ pub(crate) fn learn(
     sets: &[SeenSets],
     observer: &dyn Observer,
 ) -> Result<Option<Sensing>, MapError> {
-    observer.started(Stage::Sensor, Some(components.len() as u64));
+    let work = components.iter().zip(sets).map(|(members, sets)| work(members, sets)).sum();
+    observer.started(Stage::Sensor, Some(work));
     if observer.interrupted() {
         return Err(MapError::Interrupted);
     }
@@ -203,13 +204,26 @@ pub(crate) fn learn(
                 deviation[member as usize] = sensor.range;
             }
         }
-        observer.advanced(1);
     }
     observer.finished(Stage::Sensor);
     if sensors.is_empty() {
         return Ok(None);
     }
     Sensing::from_parts(sensors, detectability, deviation, &occluded).map(Some)
+}
+
+/// How much work a component is: what [`learn_one`] tells the observer of.
+pub(crate) fn work(members: &[u32], sets: &SeenSets) -> u64 {
+    if members.len() < 3 {
+        return 0;
+    }
+    let observed = sets_observed(sets, members.len());
+    observed as u64 + warp::steps() * worth_of_a_step(observed)
+}
+
+/// The work of a step of the warp: all of them together are about as much as the sets that are observed.
+fn worth_of_a_step(observed: usize) -> u64 {
+    observed as u64 / warp::steps()
 }
 
 /// What is learnt of one component.
@@ -229,8 +243,11 @@ pub(crate) fn learn_one(
     sets: &SeenSets,
     observer: &dyn Observer,
 ) -> Result<LearntSensor, MapError> {
-    let (found, warp) =
-        rayon::join(|| observe(graph, sets, points, observer), || warp::warp(counts, graph, members, points));
+    let worth = worth_of_a_step(sets_observed(sets, points.len()));
+    let (found, warp) = rayon::join(
+        || observe(graph, sets, points, observer),
+        || warp::warp(counts, graph, members, points, worth, observer),
+    );
     let found = found?;
     let sensor = SensorModel {
         range: found.sensor.range,

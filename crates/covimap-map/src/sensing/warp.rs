@@ -10,10 +10,11 @@
 //! constant are fitted to simulated worlds: halls have a share of .58 and bend 1.4 times as much as independent
 //! errors would have it, street blocks .70 and 1.9 to 2.5 times, offices .74 to .75 and 3.0 to 4.5 times.
 
-use covimap_embed::{EmbedError, PairDistances, Point, flexibility};
+use covimap_embed::{PairDistances, Point, flexibility, flexibility_steps};
+use rayon::prelude::*;
 
 use crate::links::ALPHA;
-use crate::{CoVisibility, LandmarkId, LinkGraph};
+use crate::{CoVisibility, LandmarkId, LinkGraph, MapError, Observer};
 
 /// Links over which the mean length is taken, at least.
 const BIN: usize = 50;
@@ -24,7 +25,13 @@ const DRAWS: usize = 12;
 /// Bend over that of independent errors, were nothing of the errors chance.
 const SHARED: f64 = 7.5;
 
-/// Standard deviation of a coordinate of a component, by what bends its chart.
+/// Steps of which [`warp`] tells.
+pub(super) fn steps() -> u64 {
+    flexibility_steps(DRAWS) as u64
+}
+
+/// Standard deviation of a coordinate of a component, by what bends its chart. The observer is told of [`steps`], each
+/// of which counts for `worth`.
 ///
 /// # Errors
 /// Those of [`flexibility`].
@@ -33,7 +40,9 @@ pub(super) fn warp(
     graph: &LinkGraph,
     members: &[u32],
     points: &[Point],
-) -> Result<f64, EmbedError> {
+    worth: u64,
+    observer: &dyn Observer,
+) -> Result<f64, MapError> {
     let pairs = graph.to_pairs();
     let residuals = residuals(&pairs, points);
     let by_chance = |i: u32, j: u32| {
@@ -48,7 +57,12 @@ pub(super) fn warp(
         z * z / variance
     });
     let ratio = ratios.sum::<f64>() / residuals.len() as f64;
-    let independent = flexibility(&pairs, points, &residuals, DRAWS, 0)?;
+    let stepped = || {
+        observer.advanced(worth);
+        !observer.interrupted()
+    };
+    let independent = flexibility(&pairs, points, &residuals, DRAWS, 0, stepped)?;
+    let independent = independent.ok_or(MapError::Interrupted)?;
     let shared = 1.0 - 1.0 / ratio.max(1.0);
     Ok((SHARED * shared.powi(3)).max(1.0) * independent)
 }
@@ -58,10 +72,10 @@ fn residuals(pairs: &PairDistances, points: &[Point]) -> Vec<f64> {
     let all = pairs.pairs();
     let length = |k: usize| {
         let [a, b] = [all[k].i, all[k].j].map(|end| points[end as usize]);
-        (a[0] - b[0]).hypot(a[1] - b[1])
+        ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
     };
     let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by(|&a, &b| all[a].distance.total_cmp(&all[b].distance).then(a.cmp(&b)));
+    order.par_sort_unstable_by(|&a, &b| all[a].distance.total_cmp(&all[b].distance).then(a.cmp(&b)));
     let mut left = vec![0.0; all.len()];
     for bin in order.chunks((all.len() / BINS).max(BIN)) {
         // A bin spans some distance; within it lengths go with the distance.

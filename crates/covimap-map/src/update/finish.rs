@@ -11,7 +11,7 @@ use crate::component::ComponentMap;
 use crate::mapper::Known;
 use crate::places::SeenSets;
 use crate::report::{carried_warning, joined_seams};
-use crate::sensing::{LearntSensor, learn_one, occlusion};
+use crate::sensing::{LearntSensor, learn_one, occlusion, work};
 use crate::state::{Ground, Rules, Settled};
 use crate::{GlobalMap, LandmarkId, MapError, Observer, Sensing, SensorModel, Stage, aliases};
 
@@ -36,7 +36,8 @@ impl Draft<'_> {
         let mut fresh_maps = mapper.auto_components(&known, None, observer)?.into_iter();
         let mut fresh_sets = sets.iter();
 
-        observer.started(Stage::Sensor, Some(joined.components.len() as u64));
+        let work = members.iter().zip(&sets).map(|(members, sets)| work(members, sets)).sum();
+        observer.started(Stage::Sensor, Some(work));
         let (mut maps, mut rules, mut sensors) = (Vec::new(), Vec::new(), Vec::new());
         let branches = self.regions.branches();
         for (number, members) in joined.components.iter().enumerate() {
@@ -59,7 +60,6 @@ impl Draft<'_> {
                 sensors.extend(self.learn(members, &map.points, sets, &sensors, observer)?);
                 maps.push(map);
             }
-            observer.advanced(1);
         }
         let sensing = self.sensing(sensors, &maps)?;
         observer.finished(Stage::Sensor);
