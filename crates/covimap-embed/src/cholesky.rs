@@ -24,9 +24,9 @@ mod elimination;
 mod substitution;
 
 pub(crate) use elimination::Elimination;
-use substitution::{Runs, Value};
+use substitution::Runs;
 
-/// Values of one parallel task.
+/// Unknowns of one parallel task.
 const CHUNK: usize = 1 << 15;
 
 /// A symmetric positive definite sparse matrix with its Cholesky factor.
@@ -36,13 +36,6 @@ const CHUNK: usize = 1 << 15;
 pub(crate) struct Factored {
     structure: Arc<Structure>,
     values: Vec<f64>,
-}
-
-/// A factor in single precision: its solutions are rough, as those of a preconditioner may be, and it is read from memory
-/// in half the time, which is what most of a solve takes.
-pub(crate) struct Rounded {
-    structure: Arc<Structure>,
-    values: Vec<f32>,
 }
 
 /// What factors of matrices with the same places of entries have in common.
@@ -188,23 +181,10 @@ impl Factored {
     pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
         self.structure.solve(&self.values, rows);
     }
-
-    /// The same in single precision.
-    pub fn rounded(&self) -> Rounded {
-        let values = self.values.par_iter().with_min_len(CHUNK).map(|&value| value as f32).collect();
-        Rounded { structure: Arc::clone(&self.structure), values }
-    }
-}
-
-impl Rounded {
-    /// As [`Factored::solve`], roughly.
-    pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
-        self.structure.solve(&self.values, rows);
-    }
 }
 
 impl Structure {
-    fn solve<V: Value, const K: usize>(&self, values: &[V], rows: &mut [[f64; K]]) {
+    fn solve<const K: usize>(&self, values: &[f64], rows: &mut [[f64; K]]) {
         let in_order = self.order.par_iter().with_min_len(CHUNK).map(|&unknown| rows[unknown]);
         let mut in_order: Vec<[f64; K]> = in_order.collect();
         self.runs.substitute(values, &mut in_order);

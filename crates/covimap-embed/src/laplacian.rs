@@ -10,7 +10,7 @@
 //! A complete list with equal weights `w` needs no factor: `V = w (n I - 11')`, so that the
 //! centred solution is `Y / (w n)`.
 
-use crate::cholesky::{Factored, LowerTriangle, Rounded};
+use crate::cholesky::{Factored, LowerTriangle};
 use crate::{EmbedError, PairDistances, Point};
 
 /// `V` of a weighted pair list, ready for solves, with the components that it falls into.
@@ -28,8 +28,6 @@ enum Inverse {
     Factor(f64),
     /// By the factor of the tied Laplacian.
     Factored(Factored),
-    /// By the same, in single precision.
-    Rounded(Rounded),
 }
 
 impl Laplacian {
@@ -65,19 +63,11 @@ impl Laplacian {
         self.sizes.len()
     }
 
-    /// The same with rough solutions, as for a preconditioner.
-    pub fn rounded(self) -> Self {
-        match self.inverse {
-            Inverse::Factored(factored) => Self { inverse: Inverse::Rounded(factored.rounded()), ..self },
-            _ => self,
-        }
-    }
-
-    /// The factor of the tied Laplacian, if there is one in double precision.
+    /// The factor of the tied Laplacian, if one was needed.
     pub fn factored(&self) -> Option<&Factored> {
         match &self.inverse {
             Inverse::Factored(factored) => Some(factored),
-            _ => None,
+            Inverse::Factor(_) => None,
         }
     }
 
@@ -94,7 +84,6 @@ impl Laplacian {
         match &self.inverse {
             Inverse::Factor(factor) => y.as_flattened_mut().iter_mut().for_each(|x| *x *= factor),
             Inverse::Factored(factored) => factored.solve(y),
-            Inverse::Rounded(rounded) => rounded.solve(y),
         }
         self.centre(y);
     }

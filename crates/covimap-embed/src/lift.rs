@@ -110,7 +110,7 @@ pub fn lift(
     let laplacian = Laplacian::of(pairs)?;
     let press = Press::new(pairs, &laplacian, PRESS[0])?;
     let (links, bounds) = (Springs::of_pairs(pairs), Springs::none(start.len()));
-    let mut folded = Unfolding { links, bounds, laplacian: laplacian.rounded(), press };
+    let mut folded = Unfolding { links, bounds, laplacian, press };
     let mut x = raised(pairs, start, seed);
     let rise = (PRESS[1] / PRESS[0]).powf(1.0 / (LEVELS - FREE) as f64);
     for level in 1..=LEVELS {

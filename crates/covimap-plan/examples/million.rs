@@ -2,15 +2,17 @@
 //!
 //! ```text
 //! cargo run --release -p covimap-plan --example million -- hall 1000000
+//! cargo run --release -p covimap-plan --example million -- MAP
 //! ```
 //!
-//! makes up a map of that many landmarks, ten a square metre, saves and loads it in both forms, and asks
-//! for neighbours, turns, routes and places. `hall` is an open floor; `rooms` has walls every ten metres with a
-//! door of 1.5 m in each, which lines of sight pass through alone. Landmarks are numbered strip by strip, as a robot that
-//! sweeps the floor meets them. Times are of the processor, user and system, over all threads: they do not
-//! depend on what else runs.
+//! saves and loads a map in both forms, and asks for neighbours, turns, routes and places. The map is one that was
+//! built, or made up: of that many landmarks, ten a square metre. `hall` is an open floor; `rooms` has walls every ten
+//! metres with a door of 1.5 m in each, which lines of sight pass through alone. Landmarks are numbered strip by strip, as a
+//! robot that sweeps the floor meets them. Times are of the processor, user and system, over all threads: they do not
+//! depend on what else runs. Questions are about the largest component.
 
 use std::error::Error;
+use std::path::Path;
 use std::sync::Arc;
 
 use covimap_map::{
@@ -34,8 +36,11 @@ const STRIP: f64 = 2.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [kind, landmarks] = &arguments[..] else { return Err("usage: million hall|rooms LANDMARKS".into()) };
-    let map = make_up(landmarks.parse()?, kind == "rooms")?;
+    let map = match &arguments[..] {
+        [map] => GlobalMap::load(Path::new(map))?,
+        [kind, landmarks] => make_up(landmarks.parse()?, kind == "rooms")?,
+        _ => return Err("usage: million MAP, or million hall|rooms LANDMARKS".into()),
+    };
     println!("{} landmarks, {} lines of sight", map.len(), map.sight_lines().count());
     let folder = tempfile::tempdir()?;
     for name in ["map.covimap", "map.json"] {
@@ -45,12 +50,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         let loaded = timed(&format!("load {name}, {megabytes:.0} MB"), 1, || GlobalMap::load(&path))?;
         assert_eq!(loaded, map);
     }
-    let n = map.len() as u32;
+    let range = map.sensing().map_or(SEEN, |sensing| sensing.sensor(0).range);
+    let placed = (0..).map(LandmarkId).zip(map.landmarks());
+    let asked: Vec<LandmarkId> =
+        placed.filter(|(_, placed)| placed.component == 0).map(|(id, _)| id).collect();
     let index = Arc::new(timed("index", 1, || MapIndex::new(Arc::new(map))));
     timed("covariances", 1, || index.covariance(LandmarkId(0)))?;
     timed("Delaunay graph", 1, || index.neighbours(LandmarkId(0)).map(<[_]>::len))?;
     let mut random = ChaCha8Rng::seed_from_u64(7);
-    let ids: Vec<LandmarkId> = (0..100_000).map(|_| LandmarkId(random.random_range(0..n))).collect();
+    let ids: Vec<LandmarkId> = (0..100_000).map(|_| asked[random.random_range(0..asked.len())]).collect();
     timed("10 nearest", ids.len(), || ids.iter().try_for_each(|&id| index.nearest(id, 10).map(drop)))?;
     let distinct = |t: &&[LandmarkId]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
     let triples: Vec<_> = ids.windows(3).filter(distinct).map(|t| [t[0], t[1], t[2]]).collect();
@@ -59,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     })?;
     let localiser = timed("localiser", 1, || Localiser::new(Arc::clone(&index)))?;
     let looks = ids[..1000].iter().map(|&id| {
-        let near = index.within(id, SEEN)?.into_iter().filter(|_| random.random_bool(DETECTED));
+        let near = index.within(id, range)?.into_iter().filter(|_| random.random_bool(DETECTED));
         Ok(localiser.look(near.map(|near| index.name(near.landmark))))
     });
     let looks = looks.collect::<Result<Vec<_>, covimap_plan::PlanError>>()?;

@@ -14,11 +14,6 @@ use crate::wide::wide;
 /// Sums of an inner product.
 const LANES: usize = 8;
 
-/// A value of a factor, in double or in single precision.
-pub(super) trait Value: Copy + Into<f64> + Sync {}
-
-impl<V: Copy + Into<f64> + Sync> Value for V {}
-
 /// Where the runs of a factor are.
 pub(super) struct Runs {
     /// First column of each run, and at last their number.
@@ -60,7 +55,7 @@ impl Runs {
     }
 
     /// Solves `L L' x = y` in place, rows in the order of the factor.
-    pub fn substitute<V: Value, const K: usize>(&self, values: &[V], y: &mut [[f64; K]]) {
+    pub fn substitute<const K: usize>(&self, values: &[f64], y: &mut [[f64; K]]) {
         let first_of_rest = self.parts.last().map_or(0, |part| part.end);
         let rest = first_of_rest..self.columns.len() - 1;
         let (own, last) = y.split_at_mut(self.columns[first_of_rest] as usize);
@@ -102,9 +97,9 @@ impl Runs {
 
     /// `L x = y` in some runs, which hold the rows `own`; `added` collects what is added to the last rows of all.
     #[inline(always)]
-    fn forward<V: Value, const K: usize>(
+    fn forward<const K: usize>(
         &self,
-        values: &[V],
+        values: &[f64],
         runs: Range<usize>,
         own: &mut [[f64; K]],
         added: &mut [[f64; K]],
@@ -141,9 +136,9 @@ impl Runs {
 
     /// `L' x = y` in some runs, which hold the rows `own`, with the last rows of all known.
     #[inline(always)]
-    fn backward<V: Value, const K: usize>(
+    fn backward<const K: usize>(
         &self,
-        values: &[V],
+        values: &[f64],
         runs: Range<usize>,
         own: &mut [[f64; K]],
         last: &[[f64; K]],
@@ -173,7 +168,7 @@ impl Runs {
     }
 
     /// The values of a run by columns, and the rows below its triangle.
-    fn panel<'a, V>(&'a self, run: usize, values: &'a [V]) -> (&'a [V], &'a [u32]) {
+    fn panel<'a>(&'a self, run: usize, values: &'a [f64]) -> (&'a [f64], &'a [u32]) {
         let rows = &self.rows[self.below[run]..self.below[run + 1]];
         (&values[self.panels[run]..self.panels[run + 1]], rows)
     }
@@ -214,14 +209,12 @@ impl<const K: usize> Sides<K> {
     /// Divides row `k` by the first entry of its column, from the diagonal down, and takes its multiples from the
     /// rows after it.
     #[inline(always)]
-    fn eliminate<V: Value>(&mut self, k: usize, column: &[V]) {
+    fn eliminate(&mut self, k: usize, column: &[f64]) {
         let (&diagonal, below) = column.split_first().expect("a column has a diagonal (bug in covimap)");
-        let diagonal: f64 = diagonal.into();
         for side in &mut self.0 {
             let (own, rest) = side[k..].split_first_mut().expect("every column has its row (bug in covimap)");
             *own /= diagonal;
             for (y, &factor) in rest.iter_mut().zip(below) {
-                let factor: f64 = factor.into();
                 *y -= factor * *own;
             }
         }
@@ -229,9 +222,8 @@ impl<const K: usize> Sides<K> {
 
     /// Takes from row `k` the multiples of the rows after it, and divides it by the first entry of its column.
     #[inline(always)]
-    fn substitute<V: Value>(&mut self, k: usize, column: &[V]) {
+    fn substitute(&mut self, k: usize, column: &[f64]) {
         let (&diagonal, below) = column.split_first().expect("a column has a diagonal (bug in covimap)");
-        let diagonal: f64 = diagonal.into();
         for side in &mut self.0 {
             let (own, rest) = side[k..].split_first_mut().expect("every column has its row (bug in covimap)");
             *own = (*own - product(below, rest)) / diagonal;
@@ -241,18 +233,16 @@ impl<const K: usize> Sides<K> {
 
 /// `sum factor_i y_i`, in interleaved sums that need not wait for each other.
 #[inline(always)]
-fn product<V: Value>(factors: &[V], y: &[f64]) -> f64 {
+fn product(factors: &[f64], y: &[f64]) -> f64 {
     let mut sums = [0.0; LANES];
     let (many, rest) = factors.as_chunks::<LANES>();
     let (values, last) = y.as_chunks::<LANES>();
     for (factors, values) in many.iter().zip(values) {
         for ((sum, &factor), y) in sums.iter_mut().zip(factors).zip(values) {
-            let factor: f64 = factor.into();
             *sum += factor * y;
         }
     }
     for ((sum, &factor), y) in sums.iter_mut().zip(rest).zip(last) {
-        let factor: f64 = factor.into();
         *sum += factor * y;
     }
     sums.iter().sum()

@@ -1,7 +1,7 @@
 //! The press: what drives objects back into the plane.
 
 use super::Lifted;
-use crate::cholesky::{Factored, LowerTriangle, Rounded};
+use crate::cholesky::{Factored, LowerTriangle};
 use crate::laplacian::{Laplacian, components, tied_laplacian};
 use crate::{EmbedError, PairDistances, Point};
 
@@ -11,8 +11,7 @@ pub(super) struct Press {
     /// `w_i`.
     weights: Vec<f64>,
     matrix: LowerTriangle,
-    pub(super) factored: Factored,
-    rounded: Rounded,
+    factored: Factored,
 }
 
 impl Press {
@@ -32,8 +31,7 @@ impl Press {
             Some(factored) => factored.another(&matrix),
             None => Factored::new(&matrix),
         }?;
-        let rounded = factored.rounded();
-        Ok(Self { mu, weights, matrix, factored, rounded })
+        Ok(Self { mu, weights, matrix, factored })
     }
 
     /// The same with another press.
@@ -43,8 +41,7 @@ impl Press {
         }
         press(&mut self.matrix, &self.weights, mu - self.mu);
         let factored = self.factored.refactor(&self.matrix)?;
-        let rounded = factored.rounded();
-        Ok(Self { mu, factored, rounded, ..self })
+        Ok(Self { mu, factored, ..self })
     }
 
     /// What an object adds to the value, and to half of the gradient.
@@ -54,9 +51,9 @@ impl Press {
         (press * (u * u + v * v), [0.0, 0.0, press * u, press * v])
     }
 
-    /// Replaces `y` by `(V + mu diag(w_i))^-1 y`, roughly.
+    /// Replaces `y` by `(V + mu diag(w_i))^-1 y`.
     pub fn solve(&self, y: &mut [Point]) {
-        self.rounded.solve(y);
+        self.factored.solve(y);
     }
 }
 

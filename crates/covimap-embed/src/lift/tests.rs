@@ -176,7 +176,7 @@ proptest! {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let y: Vec<Point> = (0..n).map(|_| [rng.random(), rng.random()]).collect();
         let mut solved = y.clone();
-        press.factored.solve(&mut solved);
+        press.solve(&mut solved);
         let (component, sizes) = crate::laplacian::components(n as usize, pairs.pairs().iter().map(|p| (p.i, p.j)));
         let last = |c: u32| component.iter().rposition(|&other| other == c).unwrap();
         let tied: Vec<usize> = (0..sizes.len() as u32).map(last).collect();
