@@ -31,8 +31,7 @@ const CHUNK: usize = 1 << 15;
 
 /// A symmetric positive definite sparse matrix with its Cholesky factor.
 ///
-/// Factorisation runs on the calling thread: the parallel forms are slower at these sizes, and their results would
-/// depend on the thread count.
+/// Factorisation runs on the calling thread: the parallel form is slower at these sizes, for most fronts are small.
 pub(crate) struct Factored {
     structure: Arc<Structure>,
     values: Vec<f64>,

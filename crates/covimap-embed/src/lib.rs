@@ -71,6 +71,7 @@ pub use starts::{random_starts, torgerson_start};
 pub use stress::{raw_stress, stress1};
 pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
 pub use unfold::{Unfolded, unfold};
+pub use wide::wide;
 
 /// A position in the plane, `[x, y]`.
 pub type Point = [f64; 2];

@@ -5,7 +5,7 @@
 //! relative to the grid alone, and is cut out of one table: a landmark's place is rounded to
 //! [`PARTS`] parts of the spacing, a rounding that differs from step to step and so averages out.
 //! Rows of a cutting are contiguous, so that the arithmetic over them is done many at a time, eight where the
-//! processor can ([`wide`]). No sum is put into another order by that: results are the same on every processor.
+//! processor can ([`wide`](covimap_embed::wide())). No sum is put into another order by that: results are the same on every processor.
 
 use covimap_embed::Point;
 
@@ -33,12 +33,6 @@ pub(super) type Lanes = [f32; CELLS];
 /// Sum over the places of a row, in their order.
 pub(super) fn sum(lanes: Lanes) -> f64 {
     f64::from(lanes.iter().sum::<f32>())
-}
-
-/// Runs arithmetic over rows with the widest registers that the processor has. Only what is inlined gains by it.
-#[inline]
-pub(super) fn wide<R>(arithmetic: impl FnOnce() -> R) -> R {
-    pulp::Arch::new().dispatch(arithmetic)
 }
 
 /// Where a landmark lies relative to a grid.

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use covimap_embed::Point;
+use covimap_embed::{Point, wide};
 
 use super::Model;
-use super::grid::{CELLS, Cells, Cutting, NEAR, Sight, wide};
+use super::grid::{CELLS, Cells, Cutting, NEAR, Sight};
 use crate::LinkGraph;
 
 /// Places below this share of the most likely one are passed over.

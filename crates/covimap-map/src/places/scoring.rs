@@ -9,9 +9,9 @@
 //! That information takes the places for known. What a log really says about a position is the sum
 //! over steps of `(sum_y g r D) (sum_y g r D)'`: a step that leaves its place open has a small score.
 
-use covimap_embed::Point;
+use covimap_embed::{Point, wide};
 
-use super::grid::{CELLS, Lanes, Sight, sum, wide};
+use super::grid::{CELLS, Lanes, Sight, sum};
 use super::posterior::{Step, Witness};
 use super::sensor::DETECTABILITY;
 

@@ -1,6 +1,8 @@
 //! How range, edge, detectability and false sightings of the sensor are fitted to the log.
 
-use super::grid::{CELLS, Sight, sum, wide};
+use covimap_embed::wide;
+
+use super::grid::{CELLS, Sight, sum};
 use super::posterior::{Step, Witness};
 use super::sensor::{DETECTABILITY, FALSE_SIGHTING, Sensor};
 
