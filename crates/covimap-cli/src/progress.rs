@@ -219,8 +219,8 @@ fn unit(stage: Stage) -> &'static str {
         Stage::LocalMaps => "regions",
         Stage::Variants => "regions and pieces",
         Stage::Refine => "iterations at most",
-        Stage::Lift | Stage::Distances | Stage::Polish => "steps at most",
-        Stage::Regions | Stage::Stitch | Stage::Classical | Stage::Sensor => "steps",
+        Stage::Stitch | Stage::Lift | Stage::Distances | Stage::Polish => "steps at most",
+        Stage::Regions | Stage::Classical | Stage::Sensor => "steps",
     }
 }
 

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::distances::Law;
 use crate::local_map::LocalMap;
 use crate::progress::begin;
-use crate::stitch::{Stitched, stitch};
+use crate::stitch::{Patchwork, Stitched};
 use crate::surveyor::Surveyor;
 use crate::{MapError, RegionCover, Stage, variants};
 
@@ -50,13 +50,13 @@ pub(crate) fn lay_out(surveyor: &Surveyor) -> Result<Layout, MapError> {
     observer.finished(Stage::LocalMaps);
 
     begin(Stage::Stitch, Some(2 * maps.len() as u64), observer)?;
-    let mut stitched = stitch(graph, &cover, &maps, observer)?;
+    let mut stitched = Patchwork::new(graph, &cover, &maps, observer).stitched()?;
     let hinged = cover.widen(graph, &stitched.seams.hinges, params.regions);
     if !hinged.is_empty() {
         let wider = hinged.par_iter().map(|&region| surveyor.solved(law.as_ref(), &cover.regions()[region]));
         let wider: Vec<LocalMap> = wider.collect::<Result<_, _>>()?;
         hinged.iter().zip(wider).for_each(|(&region, map)| maps[region] = map);
-        stitched = stitch(graph, &cover, &maps, observer)?;
+        stitched = Patchwork::new(graph, &cover, &maps, observer).stitched()?;
     }
     observer.finished(Stage::Stitch);
     let hinges = stitched.seams.hinges.len();

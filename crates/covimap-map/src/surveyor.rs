@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::distances::{Distances, Law, Unseen};
 use crate::local_map::{self, LocalMap};
-use crate::stitch::stitch;
+use crate::stitch::Patchwork;
 use crate::{AutoParams, LinkGraph, MapError, Observer, Region, RegionCover, Silent};
 
 /// Steps by which a local map follows the law.
@@ -26,7 +26,7 @@ impl Surveyor<'_> {
     /// The maps of the regions of another cover, stitched; tells of every region.
     pub fn laid_out_by(&self, law: &Law, cover: &RegionCover) -> Result<Vec<Point>, MapError> {
         let maps = self.local_maps(cover, Some(law))?;
-        Ok(stitch(self.graph, cover, &maps, &Silent)?.points)
+        Ok(Patchwork::new(self.graph, cover, &maps, &Silent).stitched()?.points)
     }
 
     /// The maps of all regions; tells of every region.

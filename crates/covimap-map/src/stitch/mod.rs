@@ -20,7 +20,7 @@ use covimap_embed::{
     Estimate, Point, RelativeFrame, Similarity, SynchroniseOptions, Synchronised, synchronise,
 };
 
-use crate::{LinkGraph, LocalMap, MapError, Observer, RegionCover, SeamsReport, Silent};
+use crate::{LinkGraph, LocalMap, MapError, Observer, RegionCover, SeamsReport};
 pub(crate) use branches::SURE;
 use seams::Seam;
 pub(crate) use seams::flatness;
@@ -43,62 +43,62 @@ pub(crate) struct Stitched {
     pub seams: SeamsReport,
 }
 
-/// Puts the maps of the regions of a connected graph together, and tells of every region twice.
-pub(crate) fn stitch(
-    graph: &LinkGraph,
-    cover: &RegionCover,
-    maps: &[LocalMap],
-    observer: &dyn Observer,
-) -> Result<Stitched, MapError> {
-    let seams = seams::find(graph, cover, maps, observer);
-    let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
-    observer.advanced(maps.len() as u64);
-    let used: Vec<usize> =
-        seams.iter().zip(&synchronised.edges).map(|(seam, edge)| seam.fit_of(edge.used)).collect();
-    Ok(joined(graph, cover, maps, &seams, &used, &synchronised))
+/// The local maps of a connected graph, and what the landmarks that they share tell of how they lie to each other.
+pub(crate) struct Patchwork<'a> {
+    cover: &'a RegionCover,
+    maps: &'a [LocalMap],
+    landmarks: usize,
+    seams: Vec<Seam>,
 }
 
-/// Which regions lie mirrored, if `more(a, b)` is known besides of the evidence that regions `a` and `b` are of equal
-/// handedness.
-pub(crate) fn sides(
-    graph: &LinkGraph,
-    cover: &RegionCover,
-    maps: &[LocalMap],
-    more: impl Fn(u32, u32) -> f64,
-) -> Result<Vec<bool>, MapError> {
-    let mut seams = seams::find(graph, cover, maps, &Silent);
-    seams.iter_mut().for_each(|seam| seam.evidence += more(seam.a, seam.b));
-    let synchronised = synchronise(maps.len(), &open_edges(&seams), RIGID)?;
-    Ok(synchronised.global_from_node.iter().map(|frame| frame.mirrored).collect())
-}
+impl<'a> Patchwork<'a> {
+    /// Lays the maps of all regions of `cover` side by side; tells of every region.
+    pub fn new(
+        graph: &LinkGraph,
+        cover: &'a RegionCover,
+        maps: &'a [LocalMap],
+        observer: &dyn Observer,
+    ) -> Self {
+        Self { cover, maps, landmarks: graph.landmarks(), seams: seams::find(graph, cover, maps, observer) }
+    }
 
-/// The same as [`stitch`] where it is known which regions lie mirrored.
-pub(crate) fn stitch_by_sides(
-    graph: &LinkGraph,
-    cover: &RegionCover,
-    maps: &[LocalMap],
-    mirrored: &[bool],
-) -> Result<Stitched, MapError> {
-    let seams = seams::find(graph, cover, maps, &Silent);
-    let used = |seam: &Seam| usize::from(mirrored[seam.a as usize] != mirrored[seam.b as usize]);
-    let used: Vec<usize> = seams.iter().map(used).collect();
-    let edges: Vec<RelativeFrame> =
-        seams.iter().zip(&used).map(|(seam, &used)| relative_frame(seam, used)).collect();
-    let synchronised = synchronise(maps.len(), &edges, RIGID)?;
-    Ok(joined(graph, cover, maps, &seams, &used, &synchronised))
-}
+    /// One frame for all.
+    pub fn stitched(&self) -> Result<Stitched, MapError> {
+        let synchronised = synchronise(self.maps.len(), &open_edges(&self.seams), RIGID)?;
+        let both = self.seams.iter().zip(&synchronised.edges);
+        let used: Vec<usize> = both.map(|(seam, edge)| seam.fit_of(edge.used)).collect();
+        Ok(self.joined(&used, &synchronised))
+    }
 
-fn joined(
-    graph: &LinkGraph,
-    cover: &RegionCover,
-    maps: &[LocalMap],
-    seams: &[Seam],
-    used: &[usize],
-    synchronised: &Synchronised,
-) -> Stitched {
-    let points = blend(graph.landmarks(), cover, maps, &synchronised.global_from_node);
-    let (branch_of, seams) = branches::find(cover, seams, used, &synchronised.edges);
-    Stitched { points, branch_of, seams }
+    /// Which regions lie mirrored, if `more(a, b)` is known besides of the evidence that regions `a` and `b` are of
+    /// equal handedness.
+    pub fn sides(&self, more: impl Fn(u32, u32) -> f64) -> Result<Vec<bool>, MapError> {
+        let told = |seam: &Seam| Seam { evidence: seam.evidence + more(seam.a, seam.b), ..seam.clone() };
+        let told: Vec<Seam> = self.seams.iter().map(told).collect();
+        let synchronised = synchronise(self.maps.len(), &open_edges(&told), RIGID)?;
+        Ok(synchronised.global_from_node.iter().map(|frame| frame.mirrored).collect())
+    }
+
+    /// One frame for all where it is known which regions lie mirrored.
+    pub fn stitched_by(&self, mirrored: &[bool]) -> Result<Stitched, MapError> {
+        let used = |seam: &Seam| usize::from(mirrored[seam.a as usize] != mirrored[seam.b as usize]);
+        let used: Vec<usize> = self.seams.iter().map(used).collect();
+        let edges: Vec<RelativeFrame> =
+            self.seams.iter().zip(&used).map(|(seam, &used)| relative_frame(seam, used)).collect();
+        let synchronised = synchronise(self.maps.len(), &edges, RIGID)?;
+        Ok(self.joined(&used, &synchronised))
+    }
+
+    /// Regions that have a seam in common, ascending.
+    pub fn neighbours(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.seams.iter().map(|seam| (seam.a, seam.b))
+    }
+
+    fn joined(&self, used: &[usize], synchronised: &Synchronised) -> Stitched {
+        let points = blend(self.landmarks, self.cover, self.maps, &synchronised.global_from_node);
+        let (branch_of, seams) = branches::find(self.cover, &self.seams, used, &synchronised.edges);
+        Stitched { points, branch_of, seams }
+    }
 }
 
 /// The likelier fit of every seam first, and the other one as its alternative.

@@ -37,7 +37,8 @@ fn rmse(points: &[Point], truth: &[Point]) -> f64 {
 fn stitched(truth: &[Point], reach: f64, noise: f64, seed: u64) -> f64 {
     let graph = exact_links(truth, reach);
     let cover = RegionCover::new(&graph, RegionParams::default());
-    rmse(&stitch(&graph, &cover, &local_maps(truth, &cover, noise, seed), &Silent).unwrap().points, truth)
+    let maps = local_maps(truth, &cover, noise, seed);
+    rmse(&Patchwork::new(&graph, &cover, &maps, &Silent).stitched().unwrap().points, truth)
 }
 
 proptest! {
@@ -67,7 +68,7 @@ fn a_single_region_keeps_its_map() {
     let graph = exact_links(&truth, 1.1);
     let cover = RegionCover::new(&graph, RegionParams::default());
     let maps = local_maps(&truth, &cover, 0.0, 4);
-    assert_eq!(stitch(&graph, &cover, &maps, &Silent).unwrap().points, maps[0].points);
+    assert_eq!(Patchwork::new(&graph, &cover, &maps, &Silent).stitched().unwrap().points, maps[0].points);
 }
 
 #[test]
@@ -115,7 +116,7 @@ fn links_through_a_door_decide_which_side_is_which() {
         let (truth, graph) = rooms_with_a_door(seed);
         let cover = RegionCover::new(&graph, RegionParams::default());
         let maps = local_maps(&truth, &cover, 0.02, seed);
-        let rmse = rmse(&stitch(&graph, &cover, &maps, &Silent).unwrap().points, &truth);
+        let rmse = rmse(&Patchwork::new(&graph, &cover, &maps, &Silent).stitched().unwrap().points, &truth);
         // Folded over at the door the rooms would lie on each other, metres from where they belong.
         assert!(rmse < 0.15, "seed {seed}: {rmse}");
     }
@@ -127,7 +128,9 @@ fn the_same_bits_on_one_thread_and_on_three() {
     let graph = exact_links(&truth, 1.1);
     let cover = RegionCover::new(&graph, RegionParams::default());
     let maps = local_maps(&truth, &cover, 0.03, 2);
-    let run = |threads| on_threads(threads, || stitch(&graph, &cover, &maps, &Silent).unwrap().points);
+    let run = |threads| {
+        on_threads(threads, || Patchwork::new(&graph, &cover, &maps, &Silent).stitched().unwrap().points)
+    };
     assert_eq!(run(1), run(3));
 }
 
@@ -143,12 +146,13 @@ fn room() -> (LinkGraph, RegionCover, Vec<LocalMap>) {
 #[test]
 fn by_the_sides_that_it_finds_stitching_gives_its_own_map() {
     let (graph, cover, maps) = room();
-    let found = sides(&graph, &cover, &maps, |_, _| 0.0).unwrap();
+    let patchwork = Patchwork::new(&graph, &cover, &maps, &Silent);
+    let found = patchwork.sides(|_, _| 0.0).unwrap();
     assert!(found.contains(&true) && found.contains(&false));
     let opposite: Vec<bool> = found.iter().map(|side| !side).collect();
-    let wanted = stitch(&graph, &cover, &maps, &Silent).unwrap();
+    let wanted = patchwork.stitched().unwrap();
     for known in [found, opposite] {
-        let stitched = stitch_by_sides(&graph, &cover, &maps, &known).unwrap();
+        let stitched = patchwork.stitched_by(&known).unwrap();
         assert!(rmse(&stitched.points, &wanted.points) < 1e-6);
         assert_eq!(
             (stitched.branch_of, &stitched.seams.hinges),
@@ -160,18 +164,19 @@ fn by_the_sides_that_it_finds_stitching_gives_its_own_map() {
 #[test]
 fn what_is_known_besides_outweighs_seams() {
     let (graph, cover, maps) = room();
-    let found = sides(&graph, &cover, &maps, |_, _| 0.0).unwrap();
+    let patchwork = Patchwork::new(&graph, &cover, &maps, &Silent);
+    let found = patchwork.sides(|_, _| 0.0).unwrap();
     // Region 3 is said to lie the other way round.
     let said = |a: u32, b: u32| {
         let equal = (found[a as usize] == found[b as usize]) != (a == 3 || b == 3);
         if equal { 1e4 } else { -1e4 }
     };
-    let sides = sides(&graph, &cover, &maps, said).unwrap();
+    let sides = patchwork.sides(said).unwrap();
     let changed: Vec<usize> =
         (0..maps.len()).filter(|&r| (sides[r] != found[r]) != (sides[0] != found[0])).collect();
     assert_eq!(changed, [3]);
     // The seams of that region are used against their evidence.
-    let forced = stitch_by_sides(&graph, &cover, &maps, &sides).unwrap().seams;
+    let forced = patchwork.stitched_by(&sides).unwrap().seams;
     let against = |seam: &crate::SeamReport| seam.evidence < 0.0 && seam.regions.contains(&3);
     assert!(forced.hinges.iter().any(|hinge| against(&hinge.seam)) || forced.dropped.iter().any(against));
 }

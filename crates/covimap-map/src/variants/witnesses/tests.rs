@@ -22,14 +22,18 @@ fn pieces_are_witnesses_of_the_regions_they_hold() {
         .collect();
     let pieces = RegionCover::of_members(30, &[&range(0, 24), &range(10, 30)]);
     let best = [map(&truth, &range(0, 24), false), map(&truth, &range(10, 30), true)];
-    let lie = Lie::of(&cover, &maps, &pieces, &best);
-    assert_eq!(lie.0[0], [(0, false)]);
-    assert_eq!(lie.0[1], [(0, true), (1, false)]);
-    assert_eq!(lie.0[2], [(1, true)]);
-    assert_eq!([lie.votes(0, 1), lie.votes(1, 2), lie.votes(2, 1)], [-EVIDENCE; 3]);
+    let witnesses = Witnesses::new(&cover, &maps, &pieces, &best);
+    assert_eq!(witnesses.0[0], [(0, false)]);
+    assert_eq!(witnesses.0[1], [(0, true), (1, false)]);
+    assert_eq!(witnesses.0[2], [(1, true)]);
+    assert_eq!([witnesses.votes(0, 1), witnesses.votes(1, 2), witnesses.votes(2, 1)], [-1.0; 3]);
     // No piece holds both.
-    assert_eq!(lie.votes(0, 2), 0.0);
+    assert_eq!(witnesses.votes(0, 2), 0.0);
     // If the second region is the one that lies mirrored, so does the second piece.
-    assert_eq!(lie.pieces_by(&cover, &[false, true, false], 2), [false, true]);
-    assert_eq!(lie.pieces_by(&cover, &[true, false, true], 2), [true, false]);
+    assert_eq!(witnesses.pieces_by(&cover, &[false, true, false], 2), [false, true]);
+    assert_eq!(witnesses.pieces_by(&cover, &[true, false, true], 2), [true, false]);
+    // The first piece holds two regions, the second the other two.
+    assert_eq!(witnesses.divided_by(&[1], 2), [0, 1]);
+    assert_eq!(witnesses.divided_by(&[1, 2], 2), [0]);
+    assert_eq!(witnesses.divided_by(&[0, 1, 2], 2), [0; 0]);
 }
