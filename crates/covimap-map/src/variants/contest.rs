@@ -8,9 +8,9 @@
 //! # Algorithm
 //! The sides of all regions are synchronised with several weights of pieces. The first result is the holder. In turn,
 //! each of the others is a challenger: the regions of which it says otherwise than the holder fall into connected
-//! parts. All pieces that such a part divides, together, are brought to least stress as both lay them out, lifted and
-//! polished once more; if the two end near each other, so are these pieces with all that their landmarks have their
-//! cores in. If the challenger ends lower, the holder takes the part over.
+//! parts. The border of a part, which is all pieces that it divides, is brought to least stress as both lay it out,
+//! lifted and polished once more. If the two end near each other, the same is asked of all pieces that the border
+//! reaches into: they vary less. If the challenger ends lower, the holder takes the part over.
 //!
 //! # Complexity
 //! A synchronisation and a stitching of `O(n)` landmarks for each challenger, and twice the polish and lift of the
@@ -28,8 +28,8 @@ use crate::{MapError, RegionCover};
 /// Evidence of a piece for how two of its regions lie to each other, of the holder and of the challengers: more than
 /// seams of small regions have, which lie twisted now and then.
 const EVIDENCE: [f64; 3] = [100.0, 1000.0, 10.0];
-/// Logarithm of the ratio of two stresses of a border that decides. Nearer ones are looked at with all pieces around:
-/// of the same border, they vary by half of this with the chances of the lift.
+/// Logarithm of the ratio of two stresses of a border that decides. With the chances of the lift the stress of one and
+/// the same border varies by half of this.
 const CLEAR: f64 = 0.04;
 /// Challengers.
 pub(super) const CHALLENGES: usize = EVIDENCE.len() - 1;
