@@ -51,9 +51,9 @@ use springs::Springs;
 pub const LIFT_STEPS: usize = LEVELS * AT_A_LEVEL.max_iterations;
 
 /// Levels of the press.
-const LEVELS: usize = 6;
+const LEVELS: usize = 8;
 /// How many of them, the first ones, have the least.
-const FREE: usize = 2;
+const FREE: usize = 3;
 /// The least press, with which folds of any size cost next to nothing, and the most, under which nothing stays up.
 const PRESS: [f64; 2] = [1e-3, 3.0];
 /// Steps at each level.
