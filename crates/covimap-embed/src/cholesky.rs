@@ -1,119 +1,112 @@
 //! Sparse symmetric positive definite matrices, factored.
 //!
-//! `A = L L'` with the unknowns in the order of an [`Elimination`]. The columns of `L` come in runs (supernodes) with the
-//! same rows below their triangle; each is a dense panel. Solves go over the panels ([`substitution`]), with the parts
-//! of a large matrix at the same time.
+//! `A = L L'` with the objects in the order of an [`Elimination`]. The columns of `L` come in runs (supernodes) with the
+//! same rows below their triangle; each is a dense [panel](panels). They are [factored](factorisation) and
+//! [solved with](substitution) run by run, the parts of a large matrix at the same time.
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Par, Side, Spec};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::Side;
 use rayon::prelude::*;
 
 use crate::EmbedError;
 
 mod elimination;
+mod factorisation;
+mod folded;
+mod panels;
 mod substitution;
 
 pub(crate) use elimination::Elimination;
-use substitution::Runs;
+use folded::Folded;
+use panels::Panels;
 
 /// Unknowns of one parallel task.
 const CHUNK: usize = 1 << 15;
 
-/// A symmetric positive definite sparse matrix with its Cholesky factor.
-///
-/// Factorisation runs on the calling thread: the parallel form is slower at these sizes, for most fronts are small.
-pub(crate) struct Factored {
+/// A symmetric positive definite sparse matrix of `B` unknowns an object, with its Cholesky factor.
+pub(crate) struct Factored<const B: usize> {
     structure: Arc<Structure>,
     values: Vec<f64>,
 }
 
 /// What factors of matrices with the same places of entries have in common.
 struct Structure {
-    symbolic: SymbolicCholesky<usize>,
-    /// Unknown at each place of the elimination, and the place of each.
-    order: Vec<usize>,
-    places: Vec<usize>,
-    runs: Runs,
+    /// Object at each place of the elimination, and the place of each.
+    order: Vec<u32>,
+    places: Vec<u32>,
+    folded: Folded,
+    panels: Panels,
 }
 
-/// Lower triangle by columns: ascending rows, the diagonal first.
-pub(crate) struct LowerTriangle {
-    pub starts: Vec<usize>,
-    pub rows: Vec<usize>,
-    pub values: Vec<f64>,
+/// Lower triangle by columns, in blocks of `B` by `B` that are symmetric in themselves: an object has `B` unknowns, the
+/// one after the other.
+pub(crate) struct LowerTriangle<const B: usize> {
+    /// Where the blocks of each column start, and at last their number.
+    pub starts: Vec<u32>,
+    /// Row of each block, ascending within a column; the first one is that of the diagonal.
+    pub rows: Vec<u32>,
+    pub blocks: Vec<[[f64; B]; B]>,
 }
 
-impl LowerTriangle {
-    fn order(&self) -> usize {
+impl<const B: usize> LowerTriangle<B> {
+    /// Number of objects.
+    fn objects(&self) -> usize {
         self.starts.len() - 1
     }
 
-    fn structure(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        SymbolicSparseColMatRef::new_checked(self.order(), self.order(), &self.starts, None, &self.rows)
+    /// Number of unknowns.
+    fn order(&self) -> usize {
+        B * self.objects()
     }
 
-    /// The places of entries below the diagonal, as `(column, row)`, ascending.
-    fn entries(&self) -> impl Iterator<Item = (u32, u32)> + Clone {
-        (0..self.order()).flat_map(|column| {
-            let own = self.starts[column] + 1..self.starts[column + 1];
-            self.rows[own].iter().map(move |&row| (column as u32, row as u32))
+    /// The blocks of a column.
+    fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.starts[column] as usize..self.starts[column + 1] as usize
+    }
+
+    /// The places of blocks below the diagonal, as `(column, row)`, ascending.
+    fn edges(&self) -> impl Iterator<Item = (u32, u32)> + Clone {
+        (0..self.objects()).flat_map(move |column| {
+            let below = self.column(column).skip(1);
+            below.map(move |entry| (column as u32, self.rows[entry]))
         })
     }
 
     /// `y = A x` for the symmetric matrix whose lower triangle this is.
     pub fn times(&self, x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; x.len()];
-        for column in 0..self.order() {
-            for entry in self.starts[column]..self.starts[column + 1] {
-                let (row, value) = (self.rows[entry], self.values[entry]);
-                y[row] += value * x[column];
+        let x: &[[f64; B]] = x.as_chunks().0;
+        let mut y = vec![[0.0; B]; x.len()];
+        let product = |block: &[[f64; B]; B], x: [f64; B]| {
+            block.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>())
+        };
+        let add = |y: &mut [f64; B], more: [f64; B]| y.iter_mut().zip(more).for_each(|(y, more)| *y += more);
+        for column in 0..self.objects() {
+            for entry in self.column(column) {
+                let (row, block) = (self.rows[entry] as usize, &self.blocks[entry]);
+                add(&mut y[row], product(block, x[column]));
                 if row != column {
-                    y[column] += value * x[row];
+                    add(&mut y[column], product(block, x[row]));
                 }
             }
         }
-        y
+        y.into_flattened()
     }
 }
 
-impl Factored {
+impl<const B: usize> Factored<B> {
     /// Largest relative residual of the probe solve that is taken for a sound factorisation.
     const SOUND: f64 = 1e-6;
 
     /// Factors `A = L L'` in an order with little fill, and checks the factor on a known solution.
-    pub fn new(matrix: &LowerTriangle) -> Result<Self, EmbedError> {
-        Self::eliminated(matrix, Elimination::of(matrix.order(), matrix.entries())?)
-    }
-
-    /// As [`Factored::new`], in a given order.
-    pub fn eliminated(matrix: &LowerTriangle, elimination: Elimination) -> Result<Self, EmbedError> {
-        let n = matrix.order();
-        let Elimination { order, places, parts } = elimination;
-        // Any number of operations is above the threshold, zero too: the factor always comes in runs.
-        let runs = SupernodalThreshold(-1.0);
-        let symbolic = factorize_symbolic_cholesky(
-            matrix.structure(),
-            Side::Lower,
-            SymmetricOrdering::Custom(PermRef::new_checked(&order, &places, n)),
-            CholeskySymbolicParams { supernodal_flop_ratio_threshold: runs, ..Default::default() },
-        )
-        .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: n })?;
-        let runs = match symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(raw) => Runs::of(raw, &parts),
-            // A matrix of order 0.
-            SymbolicCholeskyRaw::Simplicial(_) => Runs::none(),
-        };
-        let structure = Arc::new(Structure { symbolic, order, places, runs });
+    pub fn new(matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
+        let structure = Arc::new(Structure::of(matrix)?);
         let factored = Self::numeric(structure, Vec::new(), matrix)?;
         factored.check(matrix)?;
         Ok(factored)
@@ -121,12 +114,12 @@ impl Factored {
 
     /// Factors another matrix with the same places of entries and entries of like size, without ordering anew and
     /// without a check.
-    pub fn another(&self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+    pub fn another(&self, matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
         Self::numeric(Arc::clone(&self.structure), Vec::new(), matrix)
     }
 
     /// As [`Factored::another`], in the memory of this one.
-    pub fn refactor(self, matrix: &LowerTriangle) -> Result<Self, EmbedError> {
+    pub fn refactor(self, matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
         Self::numeric(self.structure, self.values, matrix)
     }
 
@@ -134,36 +127,23 @@ impl Factored {
     fn numeric(
         structure: Arc<Structure>,
         mut values: Vec<f64>,
-        matrix: &LowerTriangle,
+        matrix: &LowerTriangle<B>,
     ) -> Result<Self, EmbedError> {
-        let n = matrix.order();
-        let symbolic = &structure.symbolic;
-        let out_of_memory = EmbedError::OutOfMemory { what: "factoring a sparse matrix", order: n };
-        let more = symbolic.len_val().saturating_sub(values.len());
+        let order = matrix.order();
+        let more = structure.panels.size() - values.len();
         if values.try_reserve_exact(more).is_err() {
-            return Err(out_of_memory);
+            return Err(EmbedError::OutOfMemory { what: "factoring a sparse matrix", order });
         }
-        values.resize(symbolic.len_val(), 0.0);
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-        let Ok(mut memory) = MemBuffer::try_new(scratch) else { return Err(out_of_memory) };
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(matrix.structure(), &matrix.values),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut memory),
-                Spec::default(),
-            )
-            .map_err(|_| EmbedError::Singular { order: n })?;
+        // By all threads: to touch that much memory for the first time takes as long as the factorisation.
+        values.par_extend(rayon::iter::repeat_n(0.0, more));
+        structure.factor(matrix, &mut values).map_err(|_| EmbedError::Singular { order })?;
         Ok(Self { structure, values })
     }
 
-    fn check(&self, matrix: &LowerTriangle) -> Result<(), EmbedError> {
-        let n = matrix.order();
+    fn check(&self, matrix: &LowerTriangle<B>) -> Result<(), EmbedError> {
+        let order = matrix.order();
         // A bounded, aperiodic probe: the fractional parts of multiples of the golden ratio.
-        let probe: Vec<f64> = (0..n).map(|k| (k as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
+        let probe: Vec<f64> = (0..order).map(|k| (k as f64 * 0.618_033_988_749_895).fract() - 0.5).collect();
         let wanted = matrix.times(&probe);
         let mut solved = wanted.clone();
         self.solve(solved.as_chunks_mut::<1>().0);
@@ -173,22 +153,42 @@ impl Factored {
         let miss = largest(&mut reached.iter().zip(&wanted).map(|(a, b)| a - b));
         let size = largest(&mut wanted.iter().copied());
         // Written so that a NaN fails the check.
-        if miss <= Self::SOUND * size { Ok(()) } else { Err(EmbedError::Singular { order: n }) }
+        if miss <= Self::SOUND * size { Ok(()) } else { Err(EmbedError::Singular { order }) }
     }
 
     /// Replaces `K` right-hand sides, an unknown a row, by the solutions.
     pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
-        self.structure.solve(&self.values, rows);
+        let Structure { order, places, panels, .. } = &*self.structure;
+        let of_objects: &mut [[[f64; K]; B]] = rows.as_chunks_mut().0;
+        let in_order = order.par_iter().with_min_len(CHUNK).map(|&object| of_objects[object as usize]);
+        let mut in_order: Vec<[[f64; K]; B]> = in_order.collect();
+        panels.substitute(&self.values, in_order.as_flattened_mut());
+        let own = of_objects.par_iter_mut().zip(places).with_min_len(CHUNK);
+        own.for_each(|(row, &place)| *row = in_order[place as usize]);
     }
 }
 
 impl Structure {
-    fn solve<const K: usize>(&self, values: &[f64], rows: &mut [[f64; K]]) {
-        let in_order = self.order.par_iter().with_min_len(CHUNK).map(|&unknown| rows[unknown]);
-        let mut in_order: Vec<[f64; K]> = in_order.collect();
-        self.runs.substitute(values, &mut in_order);
-        let own = rows.par_iter_mut().zip(&self.places).with_min_len(CHUNK);
-        own.for_each(|(row, &place)| *row = in_order[place]);
+    /// Of the factor of a matrix, in an order with little fill.
+    fn of<const B: usize>(matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
+        let n = matrix.objects();
+        let Elimination { order, places, parts } = Elimination::of(n, matrix.edges())?;
+        // Any number of operations is above the threshold, zero too: the factor always comes in runs.
+        let runs = SupernodalThreshold(-1.0);
+        let symbolic = factorize_symbolic_cholesky(
+            SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows),
+            Side::Lower,
+            SymmetricOrdering::Custom(PermRef::new_checked(&order, &places, n)),
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: runs, ..Default::default() },
+        )
+        .map_err(|_| EmbedError::OutOfMemory { what: "ordering a sparse matrix", order: matrix.order() })?;
+        let panels = match symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(raw) => Panels::of(raw, &parts, B),
+            // A matrix of order 0.
+            SymbolicCholeskyRaw::Simplicial(_) => Panels::none(),
+        };
+        let folded = Folded::of(matrix, &places);
+        Ok(Self { order, places, folded, panels })
     }
 }
 

@@ -27,7 +27,7 @@ enum Inverse {
     /// By this factor: all pairs weigh the same.
     Factor(f64),
     /// By the factor of the tied Laplacian.
-    Factored(Factored),
+    Factored(Factored<1>),
 }
 
 impl Laplacian {
@@ -64,7 +64,7 @@ impl Laplacian {
     }
 
     /// The factor of the tied Laplacian, if one was needed.
-    pub fn factored(&self) -> Option<&Factored> {
+    pub fn factored(&self) -> Option<&Factored<1>> {
         match &self.inverse {
             Inverse::Factored(factored) => Some(factored),
             Inverse::Factor(_) => None,
@@ -134,7 +134,7 @@ pub(crate) fn components(n: usize, edges: impl Iterator<Item = (u32, u32)>) -> (
 }
 
 /// Lower triangle of `V` plus the tie of the last object of each component.
-pub(crate) fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u32]) -> LowerTriangle {
+pub(crate) fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u32]) -> LowerTriangle<1> {
     let mut diagonal = vec![0.0; n];
     let mut starts = vec![0; n + 1];
     for &(i, j, weight) in edges {
@@ -147,25 +147,25 @@ pub(crate) fn tied_laplacian(n: usize, edges: &[(u32, u32, f64)], component: &[u
         last_of[c as usize] = node;
         starts[node + 1] += starts[node] + 1;
     }
-    let mut rows = vec![0; n + edges.len()];
-    let mut values = vec![0.0; n + edges.len()];
-    let mut at = 0;
+    let mut rows = Vec::with_capacity(n + edges.len());
+    let mut blocks = Vec::with_capacity(n + edges.len());
+    let mut edges = edges.iter().peekable();
     for node in 0..n {
-        let place = starts[node];
-        rows[place] = node;
-        values[place] = diagonal[node];
-        if last_of[component[node] as usize] == node {
+        rows.push(node as u32);
+        blocks.push([[if last_of[component[node] as usize] != node {
+            diagonal[node]
+        } else if diagonal[node] > 0.0 {
+            2.0 * diagonal[node]
+        } else {
             // A component of one object has no edge; any positive entry will do.
-            values[place] = if diagonal[node] > 0.0 { 2.0 * diagonal[node] } else { 1.0 };
-        }
-        for entry in place + 1..starts[node + 1] {
-            let (_, j, weight) = edges[at];
-            rows[entry] = j as usize;
-            values[entry] = -weight;
-            at += 1;
+            1.0
+        }]]);
+        while let Some(&(_, j, weight)) = edges.next_if(|edge| edge.0 as usize == node) {
+            rows.push(j);
+            blocks.push([[-weight]]);
         }
     }
-    LowerTriangle { starts, rows, values }
+    LowerTriangle { starts, rows, blocks }
 }
 
 #[cfg(test)]

@@ -26,11 +26,11 @@ const ROOT: u32 = u32::MAX;
 /// An order of elimination, with the parts that do not depend on each other.
 pub(crate) struct Elimination {
     /// Unknown at each place.
-    pub order: Vec<usize>,
+    pub order: Vec<u32>,
     /// Place of each unknown.
-    pub places: Vec<usize>,
+    pub places: Vec<u32>,
     /// Where each part ends; the first one starts at 0, and what comes after the last one is the rest.
-    pub parts: Vec<usize>,
+    pub parts: Vec<u32>,
 }
 
 impl Elimination {
@@ -41,18 +41,8 @@ impl Elimination {
         Ok(if n < LARGE { Self::whole(order) } else { Self::in_parts(&graph, order) })
     }
 
-    /// The same for `size` unknowns in the place of each: those of unknown `k` are `size k` to `size k + size - 1`.
-    pub fn in_blocks(self, size: usize) -> Self {
-        let blocks = |list: Vec<usize>| {
-            list.into_iter().flat_map(|k| size * k..size * k + size).collect::<Vec<usize>>()
-        };
-        let parts = self.parts.into_iter().map(|end| size * end).collect();
-        Self { order: blocks(self.order), places: blocks(self.places), parts }
-    }
-
     fn whole(order: Vec<u32>) -> Self {
-        let places = places(&order).into_iter().map(|place| place as usize).collect();
-        Self { order: order.into_iter().map(|unknown| unknown as usize).collect(), places, parts: Vec::new() }
+        Self { places: places(&order), order, parts: Vec::new() }
     }
 
     /// Puts the parts first, the rest last, and leaves the order within each as it is.
@@ -80,12 +70,12 @@ impl Elimination {
             .sort_by_key(|&place| (is_rest(place), if is_rest(place) { place } else { top[place as usize] }));
         let mut parts = Vec::new();
         let mut begun = 0;
-        for (at, &place) in rearranged.iter().enumerate() {
+        for (at, &place) in (0..).zip(&rearranged) {
             if is_rest(place) {
                 break;
             }
             let ends = top[place as usize] == place;
-            if ends && at + 1 - begun >= most as usize / 2 {
+            if ends && at + 1 - begun >= most / 2 {
                 parts.push(at + 1);
                 begun = at + 1;
             }

@@ -6,59 +6,19 @@
 
 use std::ops::Range;
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use rayon::prelude::*;
 
+use super::Panels;
 use crate::wide::wide;
 
 /// Sums of an inner product.
 const LANES: usize = 8;
 
-/// Where the runs of a factor are.
-pub(super) struct Runs {
-    /// First column of each run, and at last their number.
-    columns: Vec<u32>,
-    /// Rows below the triangle of run `s`: `rows[below[s]..below[s + 1]]`, ascending.
-    rows: Vec<u32>,
-    below: Vec<usize>,
-    /// Where the panel of each run is among the values.
-    panels: Vec<usize>,
-    /// Runs of each part.
-    parts: Vec<Range<usize>>,
-}
-
-impl Runs {
-    /// Of a matrix of order 0.
-    pub fn none() -> Self {
-        Self { columns: vec![0], rows: Vec::new(), below: vec![0], panels: vec![0], parts: Vec::new() }
-    }
-
-    /// `parts` are the columns at which independent parts end.
-    pub fn of(symbolic: &SymbolicSupernodalCholesky<usize>, parts: &[usize]) -> Self {
-        let narrow = |list: &[usize]| list.iter().map(|&k| k as u32).collect::<Vec<u32>>();
-        let mut columns = narrow(symbolic.supernode_begin());
-        columns.push(symbolic.ncols() as u32);
-        let mut from = 0;
-        // The last run of a part may go on into the rest, to which it then belongs.
-        let within = |&end: &usize| {
-            let to = columns.partition_point(|&column| column as usize <= end).saturating_sub(1);
-            Some(std::mem::replace(&mut from, to)..to)
-        };
-        let parts = parts.iter().filter_map(within).collect();
-        Self {
-            rows: narrow(symbolic.row_idx()),
-            below: symbolic.col_ptr_for_row_idx().to_vec(),
-            panels: symbolic.col_ptr_for_val().to_vec(),
-            columns,
-            parts,
-        }
-    }
-
+impl Panels {
     /// Solves `L L' x = y` in place, rows in the order of the factor.
     pub fn substitute<const K: usize>(&self, values: &[f64], y: &mut [[f64; K]]) {
-        let first_of_rest = self.parts.last().map_or(0, |part| part.end);
-        let rest = first_of_rest..self.columns.len() - 1;
-        let (own, last) = y.split_at_mut(self.columns[first_of_rest] as usize);
+        let rest = self.rest();
+        let (own, last) = y.split_at_mut(self.columns[rest.start] as usize);
         let mut slices = Vec::with_capacity(self.parts.len());
         let mut left = own;
         for part in &self.parts {
@@ -106,8 +66,7 @@ impl Runs {
     ) {
         let first = self.columns[runs.start];
         let end = first + own.len() as u32;
-        let first_of_added =
-            *self.columns.last().expect("there is an end (bug in covimap)") - added.len() as u32;
+        let first_of_added = self.order() - added.len() as u32;
         let mut sides = Sides::<K>::default();
         for run in runs {
             let (panel, rows) = self.panel(run, values);
@@ -145,8 +104,7 @@ impl Runs {
     ) {
         let first = self.columns[runs.start];
         let end = first + own.len() as u32;
-        let first_of_last =
-            *self.columns.last().expect("there is an end (bug in covimap)") - last.len() as u32;
+        let first_of_last = self.order() - last.len() as u32;
         let mut sides = Sides::<K>::default();
         for run in runs.rev() {
             let (panel, rows) = self.panel(run, values);
@@ -165,12 +123,6 @@ impl Runs {
             }
             own[start..start + width].iter_mut().enumerate().for_each(|(k, y)| *y = sides.at(k));
         }
-    }
-
-    /// The values of a run by columns, and the rows below its triangle.
-    fn panel<'a>(&'a self, run: usize, values: &'a [f64]) -> (&'a [f64], &'a [u32]) {
-        let rows = &self.rows[self.below[run]..self.below[run + 1]];
-        (&values[self.panels[run]..self.panels[run + 1]], rows)
     }
 }
 

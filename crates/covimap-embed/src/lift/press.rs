@@ -10,8 +10,8 @@ pub(super) struct Press {
     mu: f64,
     /// `w_i`.
     weights: Vec<f64>,
-    matrix: LowerTriangle,
-    factored: Factored,
+    matrix: LowerTriangle<1>,
+    factored: Factored<1>,
 }
 
 impl Press {
@@ -58,8 +58,8 @@ impl Press {
 }
 
 /// Adds `mu diag(w_i)`.
-fn press(matrix: &mut LowerTriangle, weights: &[f64], mu: f64) {
+fn press(matrix: &mut LowerTriangle<1>, weights: &[f64], mu: f64) {
     for (&first, weight) in matrix.starts.iter().zip(weights) {
-        matrix.values[first] += mu * weight;
+        matrix.blocks[first as usize][0][0] += mu * weight;
     }
 }

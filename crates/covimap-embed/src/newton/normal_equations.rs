@@ -1,18 +1,16 @@
 //! The damped second derivative of the stress, eq. (1) of the parent module, and its factor.
 
-use crate::cholesky::{Elimination, Factored, LowerTriangle};
+use crate::cholesky::{Factored, LowerTriangle};
 use crate::laplacian::components;
 use crate::{EmbedError, PairDistances, Point};
 
 /// The lower triangle of `H + mu V (x) I`, unknowns in the order `x_1 y_1 x_2 y_2 ..`.
 pub(crate) struct NormalEquations {
-    pub(super) matrix: LowerTriangle,
-    /// First entry of the 2 x 2 block of each pair: columns `2i` and `2i + 1`, rows `2j`, `2j + 1`.
-    block_of_pair: Vec<[usize; 2]>,
+    pub(super) matrix: LowerTriangle<2>,
     /// One object of each component, tied down against shifts.
     tied: Vec<bool>,
     /// The factor of the last step, whose ordering serves the next.
-    factored: Option<Factored>,
+    factored: Option<Factored<2>>,
 }
 
 impl NormalEquations {
@@ -24,29 +22,19 @@ impl NormalEquations {
         for (node, &c) in component.iter().enumerate() {
             tied[node] = !std::mem::replace(&mut seen[c as usize], true);
         }
-        let mut upper = vec![0; n];
-        for pair in pairs.pairs() {
-            upper[pair.i as usize] += 1;
+        let mut starts = Vec::with_capacity(n + 1);
+        let mut rows = Vec::with_capacity(n + pairs.pairs().len());
+        let mut left = pairs.pairs().iter().peekable();
+        for object in 0..n as u32 {
+            starts.push(rows.len() as u32);
+            rows.push(object);
+            while let Some(pair) = left.next_if(|pair| pair.i == object) {
+                rows.push(pair.j);
+            }
         }
-        let mut starts = vec![0];
-        let mut rows = Vec::with_capacity(3 * n + 4 * pairs.pairs().len());
-        let mut block_of_pair = Vec::with_capacity(pairs.pairs().len());
-        let mut at = 0;
-        for (i, &count) in upper.iter().enumerate() {
-            let own = &pairs.pairs()[at..at + count];
-            at += count;
-            let first = rows.len();
-            rows.extend([2 * i, 2 * i + 1]);
-            rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
-            starts.push(rows.len());
-            let second = rows.len();
-            rows.push(2 * i + 1);
-            rows.extend(own.iter().flat_map(|pair| [2 * pair.j as usize, 2 * pair.j as usize + 1]));
-            starts.push(rows.len());
-            block_of_pair.extend((0..own.len()).map(|k| [first + 2 + 2 * k, second + 1 + 2 * k]));
-        }
-        let values = vec![0.0; rows.len()];
-        Self { matrix: LowerTriangle { starts, rows, values }, block_of_pair, tied, factored: None }
+        starts.push(rows.len() as u32);
+        let blocks = vec![[[0.0; 2]; 2]; rows.len()];
+        Self { matrix: LowerTriangle { starts, rows, blocks }, tied, factored: None }
     }
 
     /// Factors the matrix at `points`.
@@ -58,12 +46,7 @@ impl NormalEquations {
     ) -> Result<(), EmbedError> {
         self.assemble(pairs, points, damping);
         self.factored = Some(match self.factored.take() {
-            None => {
-                // Both coordinates of an object have the same neighbours: the order of objects is good for them.
-                let edges = pairs.pairs().iter().map(|pair| (pair.i, pair.j));
-                let objects = Elimination::of(points.len(), edges)?;
-                Factored::eliminated(&self.matrix, objects.in_blocks(2))
-            }
+            None => Factored::new(&self.matrix),
             Some(last) => last.refactor(&self.matrix),
         }?);
         Ok(())
@@ -76,42 +59,37 @@ impl NormalEquations {
 
     /// Fills the matrix.
     pub(super) fn assemble(&mut self, pairs: &PairDistances, points: &[Point], damping: f64) {
-        let n = points.len();
-        let values = &mut self.matrix.values;
-        let starts = &self.matrix.starts;
-        values.fill(0.0);
-        for (pair, block) in pairs.pairs().iter().zip(&self.block_of_pair) {
-            let (i, j) = (pair.i as usize, pair.j as usize);
-            let d = [points[i][0] - points[j][0], points[i][1] - points[j][1]];
+        let LowerTriangle { starts, blocks, .. } = &mut self.matrix;
+        let diagonal = |object: u32| starts[object as usize] as usize;
+        (0..points.len() as u32).for_each(|object| blocks[diagonal(object)] = [[0.0; 2]; 2]);
+        // The blocks of a column are the diagonal and then the pairs of the object with later ones, in their order.
+        for (k, pair) in pairs.pairs().iter().enumerate() {
+            let [from, to] = [pair.i, pair.j].map(|object| points[object as usize]);
+            let d = [from[0] - to[0], from[1] - to[1]];
             let r = (d[0] * d[0] + d[1] * d[1]).sqrt();
             let (u, ratio) =
                 if r > 0.0 { ([d[0] / r, d[1] / r], pair.distance / r) } else { ([0.0; 2], 1.0) };
             let across = (1.0 - ratio).max(0.0);
             let along = 1.0 - across;
-            let k = |a: usize, b: usize| {
-                pair.weight * (along * u[a] * u[b] + if a == b { across + damping } else { 0.0 })
-            };
-            for object in [i, j] {
-                values[starts[2 * object]] += k(0, 0);
-                values[starts[2 * object] + 1] += k(0, 1);
-                values[starts[2 * object + 1]] += k(1, 1);
+            let block = [0, 1].map(|a| {
+                [0, 1].map(|b| {
+                    pair.weight * (along * u[a] * u[b] + if a == b { across + damping } else { 0.0 })
+                })
+            });
+            for object in [pair.i, pair.j] {
+                let own = &mut blocks[diagonal(object)];
+                *own = [0, 1].map(|a| [0, 1].map(|b| own[a][b] + block[a][b]));
             }
-            values[block[0]] = -k(0, 0);
-            values[block[0] + 1] = -k(0, 1);
-            values[block[1]] = -k(0, 1);
-            values[block[1] + 1] = -k(1, 1);
+            blocks[k + pair.i as usize + 1] = block.map(|row| row.map(|k| -k));
         }
-        for object in 0..n {
-            let (x, y) = (starts[2 * object], starts[2 * object + 1]);
+        for (object, &tied) in (0..).zip(&self.tied) {
+            let own = &mut blocks[diagonal(object)];
+            let [x, y] = [own[0][0], own[1][1]];
             // Against the free turn of the whole (a relative nudge), and for objects without a pair.
-            let nudge = 1e-9 * (values[x] + values[y]);
-            let tie = if self.tied[object] {
-                values[x] + values[y] + f64::from(u8::from(values[x] <= 0.0))
-            } else {
-                0.0
-            };
-            values[x] += nudge + tie;
-            values[y] += nudge + tie;
+            let nudge = 1e-9 * (x + y);
+            let tie = if tied { x + y + f64::from(u8::from(x <= 0.0)) } else { 0.0 };
+            own[0][0] += nudge + tie;
+            own[1][1] += nudge + tie;
         }
     }
 }

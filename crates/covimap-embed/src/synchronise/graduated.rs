@@ -188,7 +188,7 @@ struct System {
     pairs: Vec<(u32, u32)>,
     /// The pair of each edge.
     pair_of: Vec<usize>,
-    factored: Option<Factored>,
+    factored: Option<Factored<1>>,
 }
 
 impl System {
