@@ -4,8 +4,6 @@
 //! same rows below their triangle; each is a dense [panel](panels). They are [factored](factorisation) and
 //! [solved with](substitution) run by run, the parts of a large matrix at the same time.
 
-use std::sync::Arc;
-
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -32,7 +30,7 @@ const CHUNK: usize = 1 << 15;
 
 /// A symmetric positive definite sparse matrix of `B` unknowns an object, with its Cholesky factor.
 pub(crate) struct Factored<const B: usize> {
-    structure: Arc<Structure>,
+    structure: Structure,
     values: Vec<f64>,
 }
 
@@ -106,26 +104,21 @@ impl<const B: usize> Factored<B> {
 
     /// Factors `A = L L'` in an order with little fill, and checks the factor on a known solution.
     pub fn new(matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
-        let structure = Arc::new(Structure::of(matrix)?);
+        let structure = Structure::of(matrix)?;
         let factored = Self::numeric(structure, Vec::new(), matrix)?;
         factored.check(matrix)?;
         Ok(factored)
     }
 
     /// Factors another matrix with the same places of entries and entries of like size, without ordering anew and
-    /// without a check.
-    pub fn another(&self, matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
-        Self::numeric(Arc::clone(&self.structure), Vec::new(), matrix)
-    }
-
-    /// As [`Factored::another`], in the memory of this one.
+    /// without a check, in the memory of this factor.
     pub fn refactor(self, matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
         Self::numeric(self.structure, self.values, matrix)
     }
 
     /// The factor, in the memory of `values`, whatever they are.
     fn numeric(
-        structure: Arc<Structure>,
+        structure: Structure,
         mut values: Vec<f64>,
         matrix: &LowerTriangle<B>,
     ) -> Result<Self, EmbedError> {
@@ -158,7 +151,7 @@ impl<const B: usize> Factored<B> {
 
     /// Replaces `K` right-hand sides, an unknown a row, by the solutions.
     pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
-        let Structure { order, places, panels, .. } = &*self.structure;
+        let Structure { order, places, panels, .. } = &self.structure;
         let of_objects: &mut [[[f64; K]; B]] = rows.as_chunks_mut().0;
         let in_order = order.par_iter().with_min_len(CHUNK).map(|&object| of_objects[object as usize]);
         let mut in_order: Vec<[[f64; K]; B]> = in_order.collect();

@@ -63,29 +63,16 @@ impl Laplacian {
         self.sizes.len()
     }
 
-    /// The factor of the tied Laplacian, if one was needed.
-    pub fn factored(&self) -> Option<&Factored<1>> {
-        match &self.inverse {
-            Inverse::Factored(factored) => Some(factored),
-            Inverse::Factor(_) => None,
-        }
-    }
-
     /// Solves `V X = Y` for a `Y` that sums to zero in every component; the solution is centred
     /// at the origin in every component.
     pub fn solve(&self, y: &[Point]) -> Vec<Point> {
         let mut solution = y.to_vec();
-        self.solve_in_place(&mut solution);
-        solution
-    }
-
-    /// The same in the place of `y`.
-    pub fn solve_in_place(&self, y: &mut [Point]) {
         match &self.inverse {
-            Inverse::Factor(factor) => y.as_flattened_mut().iter_mut().for_each(|x| *x *= factor),
-            Inverse::Factored(factored) => factored.solve(y),
+            Inverse::Factor(factor) => solution.as_flattened_mut().iter_mut().for_each(|x| *x *= factor),
+            Inverse::Factored(factored) => factored.solve(&mut solution),
         }
-        self.centre(y);
+        self.centre(&mut solution);
+        solution
     }
 
     /// Moves every component to the origin.

@@ -14,13 +14,18 @@
 //! `r_ij = |x_i - x_j|`, `b_ij` how far apart two objects at least seem to be that no pair lists, `w_i = sum_j w_ij`,
 //! and `z_i` the two coordinates that are to go. The press `mu` is small at first, and rises by the same factor from
 //! level to level until it leaves nothing of them. At each level, unlisted pairs that are near each other are looked
-//! for anew, and some steps of [descent](crate::descent) are taken, preconditioned with `V` for the coordinates of the
-//! map and with `V + mu diag(w_i)` for the others, `V` the Laplacian of the weights.
+//! for anew, and some steps of [descent](crate::descent) are taken.
+//!
+//! # Preconditioner
+//! `V + mu_0 diag(w_i)`, `V` the Laplacian of the weights and `mu_0` the least press, serves all coordinates and all
+//! levels: one factor. What it takes from steps along the map is what bends the whole, which would hide the twists; the
+//! steps of least stress that follow are for that. Only where the press outweighs the stiffness of all but near
+//! neighbours is it the diagonal `(1 + mu) diag(w_i)` for the coordinates that are to go.
 //!
 //! The result is near a minimum of (1) and not of the stress: minimise that next.
 //!
 //! # Complexity
-//! Two sparse Cholesky factors of order `n`, and some hundred steps, each with two solves and one pass over the pairs.
+//! A sparse Cholesky factor of order `n`, and some hundred steps, each with a solve and one pass over the pairs.
 //!
 //! # Determinism
 //! Every object sums over its own pairs, in fixed order: the same bits for any number of threads.
@@ -33,18 +38,17 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use crate::cholesky::Factored;
 use crate::descent::{Descent, Objective, Reached};
-use crate::laplacian::Laplacian;
+use crate::laplacian::{components, tied_laplacian};
 use crate::solve::check_start;
 use crate::wide::wide;
 use crate::{EmbedError, PairDistances, Point, StopRule, Termination};
 
 mod near;
-mod press;
 mod springs;
 
 use near::too_near;
-use press::Press;
 use springs::Springs;
 
 /// Most steps that [`lift`] takes.
@@ -56,6 +60,8 @@ const LEVELS: usize = 8;
 const FREE: usize = 3;
 /// The least press, with which folds of any size cost next to nothing, and the most, under which nothing stays up.
 const PRESS: [f64; 2] = [1e-3, 3.0];
+/// The greatest press under which objects near each other move together in the dimensions that are to go.
+const SOFT: f64 = 6e-3;
 /// Steps at each level.
 const AT_A_LEVEL: StopRule = StopRule { max_iterations: 20, tolerance: 1e-5 };
 /// Greatest coordinate of the start in the dimensions that are to go, in mean distances.
@@ -107,14 +113,11 @@ pub fn lift(
     if pairs.pairs().is_empty() {
         return Ok(start.to_vec());
     }
-    let laplacian = Laplacian::of(pairs)?;
-    let press = Press::new(pairs, &laplacian, PRESS[0])?;
-    let (links, bounds) = (Springs::of_pairs(pairs), Springs::none(start.len()));
-    let mut folded = Unfolding { links, bounds, laplacian, press };
+    let mut folded = Unfolding::of(pairs)?;
     let mut x = raised(pairs, start, seed);
     let rise = (PRESS[1] / PRESS[0]).powf(1.0 / (LEVELS - FREE) as f64);
     for level in 1..=LEVELS {
-        folded.press = folded.press.by(PRESS[0] * rise.powi(level.saturating_sub(FREE) as i32))?;
+        folded.press = PRESS[0] * rise.powi(level.saturating_sub(FREE) as i32);
         folded.bounds = too_near(x.as_chunks().0, &folded.links, apart);
         let Reached { x: lower, termination, .. } =
             Descent::new().run(&mut folded, x, AT_A_LEVEL, 0.0, &mut go_on)?;
@@ -139,16 +142,45 @@ struct Unfolding {
     links: Springs,
     /// Of the unlisted pairs that are, or may soon be, nearer than they should be.
     bounds: Springs,
-    laplacian: Laplacian,
-    press: Press,
+    /// `mu`.
+    press: f64,
+    /// `w_i`.
+    weights: Vec<f64>,
+    /// Of `V + mu_0 diag(w_i)`.
+    factored: Factored<1>,
 }
 
 impl Unfolding {
+    /// Of a list, without bounds and under the least press.
+    fn of(pairs: &PairDistances) -> Result<Self, EmbedError> {
+        let n = pairs.objects();
+        let edges: Vec<_> = pairs.pairs().iter().map(|pair| (pair.i, pair.j, pair.weight)).collect();
+        let mut weights = vec![0.0; n];
+        for &(i, j, weight) in &edges {
+            weights[i as usize] += weight;
+            weights[j as usize] += weight;
+        }
+        let (component, _) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
+        let mut matrix = tied_laplacian(n, &edges, &component);
+        for (&diagonal, weight) in matrix.starts.iter().zip(&weights) {
+            matrix.blocks[diagonal as usize][0][0] += PRESS[0] * weight;
+        }
+        Ok(Self {
+            links: Springs::of_pairs(pairs),
+            bounds: Springs::none(n),
+            press: PRESS[0],
+            weights,
+            factored: Factored::new(&matrix)?,
+        })
+    }
+
     /// The share of one object in the value, and in half of the gradient.
     #[inline(always)]
     fn share(&self, x: &[Lifted], own: usize) -> (f64, Lifted) {
         let here = x[own];
-        let (mut value, mut force) = self.press.share(own, here);
+        let [_, _, u, v] = here;
+        let press = self.press * self.weights[own];
+        let (mut value, mut force) = (press * (u * u + v * v), [0.0, 0.0, press * u, press * v]);
         let mut pull = |there: Lifted, r: f64, length: f64, weight: f64| {
             let miss = r - length;
             value += 0.5 * weight * miss * miss;
@@ -173,7 +205,7 @@ impl Unfolding {
 }
 
 impl Objective for Unfolding {
-    // The factors depend on the press alone.
+    // The weights stay.
     const LIFETIME: usize = usize::MAX;
 
     fn at(&self, x: &[f64]) -> (f64, Vec<f64>) {
@@ -203,11 +235,17 @@ impl Objective for Unfolding {
 
     fn precondition(&self, v: &mut [f64]) {
         let v: &mut [Lifted] = v.as_chunks_mut().0;
-        let half = |k: usize| v.par_iter().with_min_len(OBJECTS).map(move |v| [v[k], v[k + 1]]).collect();
-        let (mut flat, mut up): (Vec<Point>, Vec<Point>) = (half(0), half(2));
-        rayon::join(|| self.laplacian.solve_in_place(&mut flat), || self.press.solve(&mut up));
-        let both = flat.par_iter().zip(&up);
-        v.par_iter_mut().zip(both).for_each(|(v, (&[x, y], &[z, w]))| *v = [x, y, z, w]);
+        if self.press <= SOFT {
+            return self.factored.solve(v);
+        }
+        let mut flat: Vec<Point> = v.par_iter().with_min_len(OBJECTS).map(|&[x, y, ..]| [x, y]).collect();
+        self.factored.solve(&mut flat);
+        let stiff = 1.0 + self.press;
+        v.par_iter_mut().zip(flat).zip(&self.weights).with_min_len(OBJECTS).for_each(|((v, [x, y]), weight)| {
+            // An object without pairs rests.
+            let up = if *weight > 0.0 { 1.0 / (stiff * weight) } else { 0.0 };
+            *v = [x, y, up * v[2], up * v[3]];
+        });
     }
 }
 

@@ -166,7 +166,7 @@ fn the_factor_is_that_of_the_dense_matrix() {
     let matrix = grid(9, 7, tied);
     let order = matrix.order();
     let factored = Factored::new(&matrix).unwrap();
-    let Structure { order: objects, panels, .. } = &*factored.structure;
+    let Structure { order: objects, panels, .. } = &factored.structure;
     let unknown = |row: usize| 2 * objects[row / 2] as usize + row % 2;
     let mut factor = vec![vec![0.0; order]; order];
     for run in 0..panels.columns.len() - 1 {
@@ -197,7 +197,7 @@ proptest! {
     fn another_matrix_of_the_same_structure(width in 1_usize..9, height in 1_usize..9, more in 0.0_f64..3.0) {
         let first = grid(width, height, tied);
         let second = grid(width, height, |value| tied(if value > 0.0 { value + more } else { value }));
-        let factored = Factored::new(&first).unwrap().another(&second).unwrap();
+        let factored = Factored::new(&first).unwrap().refactor(&second).unwrap();
         let wanted = sides::<2>(second.order());
         let mut solved = wanted.clone();
         factored.solve(&mut solved);
