@@ -8,7 +8,7 @@
 //! # References
 //! J. Nocedal, S. J. Wright, Numerical Optimization, 2nd ed., 2006, algorithms 7.4 and 3.1.
 
-use crate::limited_memory::{Memory, dot, paired};
+use crate::limited_memory::{Memory, change, dot, paired};
 use crate::{EmbedError, StopRule, Termination};
 
 /// Share of the value that a step must take away for the configuration to have moved far.
@@ -96,13 +96,15 @@ impl Descent {
             };
             self.age = Some(age + 1);
             let downhill = paired(&here.gradient, &here.gradient, |g, _| -g);
-            let direction = self.memory.apply(downhill, |v, _| objective.precondition(v));
+            let mut step = self.memory.apply(downhill, |v, _| objective.precondition(v));
             let mut gained = 0.0;
-            if let Some((next, step)) = here.along(objective, &direction) {
-                gained = here.value - next.value;
-                let change = paired(&next.gradient, &here.gradient, |a, b| a - b);
-                self.memory.remember(step, change);
-                here = next;
+            if let Some((next, length)) = here.along(objective, &step) {
+                let last = std::mem::replace(&mut here, next);
+                gained = last.value - here.value;
+                step.iter_mut().for_each(|s| *s *= length);
+                let mut steeper = last.gradient;
+                change(&mut steeper, &here.gradient, |last, now| now - last);
+                self.memory.remember(step, steeper);
             }
             let settled = gained <= stop.tolerance * here.value;
             // That an aged approximation gains nothing may be its own fault, and the first step of a fresh one
@@ -126,15 +128,15 @@ impl Place {
         Self { x, value, gradient }
     }
 
-    /// As far along a direction as the value falls enough, the whole step if it can: where that leads, and the step
-    /// taken. `None` if even a step at the edge of rounding does not lower the value.
-    fn along(&self, objective: &impl Objective, direction: &[f64]) -> Option<(Self, Vec<f64>)> {
+    /// As far along a direction as the value falls enough, the whole step if it can: where that leads, and the share
+    /// of the step taken. `None` if even a step at the edge of rounding does not lower the value.
+    fn along(&self, objective: &impl Objective, direction: &[f64]) -> Option<(Self, f64)> {
         let slope = 2.0 * dot(direction, &self.gradient);
         let mut length = 1.0;
         for _ in 0..SHORTENINGS {
             let next = Self::of(objective, paired(&self.x, direction, |x, s| x + length * s));
             if next.value <= self.value + KEPT * length * slope {
-                return Some((next, paired(direction, direction, |s, _| length * s)));
+                return Some((next, length));
             }
             // The lowest point of the parabola through what is known.
             let lowest = -slope * length / (2.0 * (next.value - self.value - slope * length));

@@ -97,13 +97,18 @@ pub(crate) fn paired(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -
     a.par_iter().zip(b).with_min_len(CHUNK).map(|(&a, &b)| f(a, b)).collect()
 }
 
+/// `a_k = f(a_k, b_k)` for all `k`.
+pub(crate) fn change(a: &mut [f64], b: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) {
+    let change = |(a, b): (&mut [f64], &[f64])| a.iter_mut().zip(b).for_each(|(a, &b)| *a = f(*a, b));
+    if a.len() <= CHUNK {
+        return change((a, b));
+    }
+    a.par_chunks_mut(CHUNK).zip(b.par_chunks(CHUNK)).for_each(change);
+}
+
 /// `a += factor b`.
 pub(crate) fn add(a: &mut [f64], factor: f64, b: &[f64]) {
-    let add = |(a, b): (&mut [f64], &[f64])| a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * b);
-    if a.len() <= CHUNK {
-        return add((a, b));
-    }
-    a.par_chunks_mut(CHUNK).zip(b.par_chunks(CHUNK)).for_each(add);
+    change(a, b, |a, b| a + factor * b);
 }
 
 #[cfg(test)]
