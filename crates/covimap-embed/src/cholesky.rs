@@ -4,13 +4,13 @@
 //! same rows below their triangle; each is a dense [panel](panels). They are [factored](factorisation) and
 //! [solved with](substitution) run by run, the parts of a large matrix at the same time.
 
+use faer::Side;
 use faer::perm::PermRef;
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::Side;
 use rayon::prelude::*;
 
 use crate::EmbedError;

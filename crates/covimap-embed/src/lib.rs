@@ -69,7 +69,9 @@ pub use spline::{MonotoneSpline, MonotoneSplineBasis};
 pub use spring::spring_embedding;
 pub use starts::{random_starts, torgerson_start};
 pub use stress::{raw_stress, stress1};
-pub use synchronise::{EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, synchronise};
+pub use synchronise::{
+    EdgeReport, Estimate, RelativeFrame, SynchroniseOptions, Synchronised, handedness, synchronise,
+};
 pub use unfold::{Unfolded, unfold};
 pub use wide::wide;
 

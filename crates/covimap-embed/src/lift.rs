@@ -49,7 +49,7 @@ mod near;
 mod springs;
 
 use near::too_near;
-use springs::Springs;
+use springs::{Spring, Springs};
 
 /// Most steps that [`lift`] takes.
 pub const LIFT_STEPS: usize = LEVELS * AT_A_LEVEL.max_iterations;
@@ -95,7 +95,7 @@ pub struct Bound {
 
 /// Untwists a map in four dimensions, and presses it flat again; the module says how.
 ///
-/// `start` is a map that is right in the small, as one put together from local maps. `seed` decides which way up its
+/// Distances and weights are taken in single precision. `start` is a map that is right in the small, as one put together from local maps. `seed` decides which way up its
 /// objects go at first. `go_on` is asked before every step, of which there are at most [`LIFT_STEPS`]; if it says no,
 /// what was reached is pressed flat at once.
 ///
@@ -181,7 +181,8 @@ impl Unfolding {
         let [_, _, u, v] = here;
         let press = self.press * self.weights[own];
         let (mut value, mut force) = (press * (u * u + v * v), [0.0, 0.0, press * u, press * v]);
-        let mut pull = |there: Lifted, r: f64, length: f64, weight: f64| {
+        let mut pull = |there: Lifted, r: f64, spring: &Spring| {
+            let (length, weight) = (f64::from(spring.length), f64::from(spring.weight));
             let miss = r - length;
             value += 0.5 * weight * miss * miss;
             if r > 0.0 {
@@ -191,13 +192,13 @@ impl Unfolding {
         };
         for spring in self.links.of(own) {
             let there = x[spring.to as usize];
-            pull(there, length(here, there), spring.length, spring.weight);
+            pull(there, length(here, there), spring);
         }
         for spring in self.bounds.of(own) {
             let there = x[spring.to as usize];
             let r = length(here, there);
-            if r < spring.length {
-                pull(there, r, spring.length, spring.weight);
+            if r < f64::from(spring.length) {
+                pull(there, r, spring);
             }
         }
         (value, force)
@@ -241,11 +242,13 @@ impl Objective for Unfolding {
         let mut flat: Vec<Point> = v.par_iter().with_min_len(OBJECTS).map(|&[x, y, ..]| [x, y]).collect();
         self.factored.solve(&mut flat);
         let stiff = 1.0 + self.press;
-        v.par_iter_mut().zip(flat).zip(&self.weights).with_min_len(OBJECTS).for_each(|((v, [x, y]), weight)| {
-            // An object without pairs rests.
-            let up = if *weight > 0.0 { 1.0 / (stiff * weight) } else { 0.0 };
-            *v = [x, y, up * v[2], up * v[3]];
-        });
+        v.par_iter_mut().zip(flat).zip(&self.weights).with_min_len(OBJECTS).for_each(
+            |((v, [x, y]), weight)| {
+                // An object without pairs rests.
+                let up = if *weight > 0.0 { 1.0 / (stiff * weight) } else { 0.0 };
+                *v = [x, y, up * v[2], up * v[3]];
+            },
+        );
     }
 }
 

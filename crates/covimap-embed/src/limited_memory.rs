@@ -28,6 +28,9 @@ struct Remembered {
     change: Vec<f64>,
     /// `1 / step'change`.
     inverse_curvature: f64,
+    /// `step'change` of all earlier steps with this change, in their order. With these known, the recursion goes over
+    /// the vectors of all steps at once and not one after the other: of large ones it is memory that takes time.
+    with_earlier: VecDeque<f64>,
 }
 
 impl Memory {
@@ -44,8 +47,17 @@ impl Memory {
         if taken {
             if self.steps.len() == REMEMBERED {
                 self.steps.pop_front();
+                self.steps.iter_mut().for_each(|later| {
+                    later.with_earlier.pop_front();
+                });
             }
-            self.steps.push_back(Remembered { step, change, inverse_curvature: 1.0 / curvature });
+            let with_earlier = dots(self.steps.iter().map(|past| past.step.as_slice()), &change).into();
+            self.steps.push_back(Remembered {
+                step,
+                change,
+                inverse_curvature: 1.0 / curvature,
+                with_earlier,
+            });
         }
         taken
     }
@@ -59,36 +71,68 @@ impl Memory {
     /// same. `precondition` replaces `v` less the shares of the changes, one a step with the newest first, by what that
     /// approximation makes of it.
     pub fn apply(&self, mut v: Vec<f64>, precondition: impl FnOnce(&mut [f64], &[f64])) -> Vec<f64> {
-        let mut shares = Vec::with_capacity(self.steps.len());
-        for past in self.steps.iter().rev() {
-            let share = past.inverse_curvature * dot(&past.step, &v);
-            add(&mut v, -share, &past.change);
-            shares.push(share);
+        // `s_i'(v - sum_(j > i) a_j y_j)` of each step, from the newest one back.
+        let mut along = dots(self.steps.iter().map(|past| past.step.as_slice()), &v);
+        for (i, past) in self.steps.iter().enumerate().rev() {
+            along[i] *= past.inverse_curvature;
+            let share = along[i];
+            along.iter_mut().zip(&past.with_earlier).for_each(|(earlier, with)| *earlier -= share * with);
         }
+        let changes = || self.steps.iter().map(|past| past.change.as_slice());
+        add_all(&mut v, changes().zip(along.iter().map(|share| -share)));
+        let shares: Vec<f64> = along.iter().rev().copied().collect();
         precondition(&mut v, &shares);
-        for (past, share) in self.steps.iter().zip(shares.into_iter().rev()) {
-            let by = share - past.inverse_curvature * dot(&past.change, &v);
-            add(&mut v, by, &past.step);
+        // `a_i - y_i'(v + sum_(j < i) b_j s_j)` of each, from the oldest one on.
+        let mut by: Vec<f64> = Vec::with_capacity(self.steps.len());
+        for ((past, share), product) in self.steps.iter().zip(&along).zip(dots(changes(), &v)) {
+            let earlier = by.iter().zip(&past.with_earlier).map(|(by, with)| by * with);
+            by.push(share - past.inverse_curvature * (product + earlier.sum::<f64>()));
         }
+        add_all(&mut v, self.steps.iter().map(|past| past.step.as_slice()).zip(by));
         v
     }
 }
 
-/// Inner product: chunk by chunk, and within a chunk in four interleaved sums that need not wait for each other.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let of_chunk = |(a, b): (&[f64], &[f64])| {
-        let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-        let mut sums = [0.0; 4];
-        for (a, b) in a.iter().zip(b) {
-            sums = std::array::from_fn(|k| sums[k] + a[k] * b[k]);
-        }
-        let rest = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum::<f64>();
-        (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+/// The inner products of `v` with each of some vectors, in one pass.
+fn dots<'a>(vectors: impl Iterator<Item = &'a [f64]>, v: &[f64]) -> Vec<f64> {
+    let vectors: Vec<&[f64]> = vectors.collect();
+    let of_chunk = |(k, v): (usize, &[f64])| {
+        let own = k * CHUNK..k * CHUNK + v.len();
+        vectors.iter().map(|vector| of_chunk(&vector[own.clone()], v)).collect::<Vec<f64>>()
     };
-    if a.len() <= CHUNK {
-        return of_chunk((a, b));
+    let all: Vec<Vec<f64>> = v.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
+    (0..vectors.len()).map(|k| all.iter().map(|products| products[k]).sum()).collect()
+}
+
+/// Adds multiples of some vectors, in one pass.
+fn add_all<'a>(v: &mut [f64], vectors: impl Iterator<Item = (&'a [f64], f64)>) {
+    let vectors: Vec<(&[f64], f64)> = vectors.collect();
+    v.par_chunks_mut(CHUNK).enumerate().for_each(|(k, v)| {
+        for (vector, factor) in &vectors {
+            let own = &vector[k * CHUNK..k * CHUNK + v.len()];
+            v.iter_mut().zip(own).for_each(|(v, own)| *v += factor * own);
+        }
+    });
+}
+
+/// Inner product of a part, in four interleaved sums that need not wait for each other.
+fn of_chunk(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in a.iter().zip(b) {
+        sums = std::array::from_fn(|k| sums[k] + a[k] * b[k]);
     }
-    let sums: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(of_chunk).collect();
+    let rest = rest_a.iter().zip(rest_b).map(|(a, b)| a * b).sum::<f64>();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// Inner product, chunk by chunk.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    if a.len() <= CHUNK {
+        return of_chunk(a, b);
+    }
+    let pairs = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
+    let sums: Vec<f64> = pairs.map(|(a, b)| of_chunk(a, b)).collect();
     sums.iter().sum()
 }
 

@@ -53,7 +53,7 @@ mod orientation;
 mod part;
 mod voting;
 
-use part::parts;
+use part::{Part, parts};
 
 /// `cos^2 + sin^2` of a rotation may differ from 1 by this.
 const ROTATION_SLACK: f64 = 1e-6;
@@ -176,6 +176,22 @@ pub fn synchronise(
     let edges =
         reports.into_iter().map(|report| report.expect("every edge has a component (bug in covimap)"));
     Ok(Synchronised { global_from_node, component, edges: edges.collect() })
+}
+
+/// Which of the frames that [`synchronise`] finds are mirrored, without the rest of them.
+///
+/// # Errors
+/// As from [`synchronise`], but none of a factorisation.
+pub fn handedness(nodes: usize, edges: &[RelativeFrame]) -> Result<Vec<bool>, EmbedError> {
+    check(nodes, edges)?;
+    let (component, sizes) = components(nodes, edges.iter().map(|edge| (edge.a, edge.b)));
+    let parts = parts(&component, sizes.len(), edges);
+    let voted: Vec<_> = parts.par_iter().map(Part::voted).collect();
+    let mut mirrored = vec![false; nodes];
+    for (part, frames) in parts.iter().zip(voted) {
+        part.nodes.iter().zip(frames).for_each(|(&node, frame)| mirrored[node as usize] = frame.mirrored);
+    }
+    Ok(mirrored)
 }
 
 fn check(nodes: usize, edges: &[RelativeFrame]) -> Result<(), EmbedError> {

@@ -18,6 +18,9 @@ use crate::{CoVisibility, HonestLinks, LandmarkId};
 /// The paper's `alpha_2`; it sets the unit of the map.
 pub(crate) const ALPHA: f64 = 0.3;
 
+/// Landmarks whose links are one parallel task.
+const ROWS: usize = 1 << 13;
+
 /// One end of a link, as stored in the row of the other end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
@@ -99,17 +102,36 @@ impl LinkGraph {
     /// The part of the graph on `members` (ascending), renumbered by their places in it.
     #[must_use]
     pub fn restricted_to(&self, members: &[u32]) -> Self {
-        let mut part = Self { starts: vec![0], links: Vec::new() };
-        for &member in members {
-            // Both lists ascend: walk them together.
-            let mut place = 0;
-            for link in self.of(member) {
-                place += members[place..].partition_point(|&other| other < link.to);
-                if members.get(place) == Some(&link.to) {
-                    part.links.push(Link { to: place as u32, ..*link });
+        // So many landmarks of the whole come before a member, at most, that are none.
+        let missing = self.landmarks() - members.len();
+        let rows = |some: &[u32]| {
+            let (mut lengths, mut links) = (Vec::with_capacity(some.len()), Vec::new());
+            for &member in some {
+                // Both lists ascend: walk them together.
+                let mut place = 0;
+                let before = links.len();
+                for link in self.of(member) {
+                    let to = link.to as usize;
+                    let within = place.max(to.saturating_sub(missing))..members.len().min(to + 1);
+                    place = within.start + members[within].partition_point(|&other| other < link.to);
+                    if members.get(place) == Some(&link.to) {
+                        links.push(Link { to: place as u32, ..*link });
+                    }
                 }
+                lengths.push(links.len() - before);
             }
-            part.starts.push(part.links.len());
+            (lengths, links)
+        };
+        let parts: Vec<_> = members.par_chunks(ROWS).map(rows).collect();
+        let mut part =
+            Self { starts: vec![0], links: Vec::with_capacity(parts.iter().map(|part| part.1.len()).sum()) };
+        for (lengths, links) in parts {
+            let first = part.links.len();
+            part.starts.extend(lengths.iter().scan(first, |end, length| {
+                *end += length;
+                Some(*end)
+            }));
+            part.links.extend(links);
         }
         part
     }

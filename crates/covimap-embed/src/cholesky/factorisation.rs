@@ -47,12 +47,12 @@ impl Structure {
             let length = panels.values(runs.clone()).len();
             remaining.split_off_mut(..length).expect("panels fill the values (bug in covimap)")
         };
-        let parts: Vec<(&Range<usize>, &mut [f64])> = panels.parts.iter().map(|part| (part, own(part))).collect();
+        let parts: Vec<(&Range<usize>, &mut [f64])> =
+            panels.parts.iter().map(|part| (part, own(part))).collect();
         let rest = panels.rest();
         let of_rest = own(&rest);
-        let part = |(runs, values): (&Range<usize>, &mut [f64])| {
-            self.runs(matrix, runs.clone(), values, Vec::new())
-        };
+        let part =
+            |(runs, values): (&Range<usize>, &mut [f64])| self.runs(matrix, runs.clone(), values, Vec::new());
         let left: Vec<Vec<Left>> = parts.into_par_iter().map(part).collect::<Result<_, _>>()?;
         self.runs(matrix, rest, of_rest, left.into_iter().flatten().collect())?;
         Ok(())

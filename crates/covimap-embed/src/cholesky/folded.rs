@@ -20,7 +20,8 @@ impl Folded {
             (a.min(b), a.max(b))
         };
         let mut starts = vec![0_u32; places.len() + 1];
-        let all = || (0..places.len()).flat_map(|column| matrix.column(column).map(move |entry| (column, entry)));
+        let all =
+            || (0..places.len()).flat_map(|column| matrix.column(column).map(move |entry| (column, entry)));
         all().for_each(|(column, entry)| starts[ends(column, entry).0 as usize + 1] += 1);
         for place in 0..places.len() {
             starts[place + 1] += starts[place];
@@ -36,7 +37,8 @@ impl Folded {
         let mut left = blocks.as_mut_slice();
         let mut columns = Vec::with_capacity(places.len());
         for ends in starts.windows(2) {
-            columns.push(left.split_off_mut(..(ends[1] - ends[0]) as usize).expect("counted (bug in covimap)"));
+            columns
+                .push(left.split_off_mut(..(ends[1] - ends[0]) as usize).expect("counted (bug in covimap)"));
         }
         columns.into_par_iter().with_min_len(CHUNK).for_each(|column| column.sort_unstable());
         Self { starts, blocks }

@@ -37,7 +37,11 @@ fn a_matrix_that_is_not_positive_definite_is_refused() {
 }
 
 /// A grid of `width` by `height` unknowns, each tied to its neighbours, in a shuffled order.
-fn grid<const B: usize>(width: usize, height: usize, block: impl Fn(f64) -> [[f64; B]; B]) -> LowerTriangle<B> {
+fn grid<const B: usize>(
+    width: usize,
+    height: usize,
+    block: impl Fn(f64) -> [[f64; B]; B],
+) -> LowerTriangle<B> {
     let n = width * height;
     // A multiplier without common divisors with n goes through all numbers.
     let mut step = n / 2 + 1;

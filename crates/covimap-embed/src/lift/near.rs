@@ -33,7 +33,8 @@ pub(super) fn too_near(x: &[Lifted], links: &Springs, apart: &impl Apart) -> Spr
                 }
                 let bound = apart.bound(own as u32, to);
                 if r < AHEAD * bound.distance {
-                    row.push(Spring { to, length: bound.distance, weight: BELIEVED * bound.weight });
+                    let (length, weight) = (bound.distance as f32, (BELIEVED * bound.weight) as f32);
+                    row.push(Spring { to, length, weight });
                 }
             }
         }

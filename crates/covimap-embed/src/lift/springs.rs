@@ -9,12 +9,14 @@ pub(super) struct Springs {
     springs: Vec<Spring>,
 }
 
+/// Length and weight need not be more precise: a lift ends near a minimum only, and passes over all springs take as long
+/// as reading them does.
 #[derive(Clone, Copy)]
 pub(super) struct Spring {
     /// The object at the other end.
     pub to: u32,
-    pub length: f64,
-    pub weight: f64,
+    pub length: f32,
+    pub weight: f32,
 }
 
 impl Springs {
@@ -29,7 +31,7 @@ impl Springs {
         let row = |own| {
             let spring = |&(to, pair): &(u32, u32)| {
                 let pair = pairs.pairs()[pair as usize];
-                Spring { to, length: pair.distance, weight: pair.weight }
+                Spring { to, length: pair.distance as f32, weight: pair.weight as f32 }
             };
             incidence.of(own).iter().map(spring)
         };

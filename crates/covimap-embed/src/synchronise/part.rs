@@ -52,15 +52,19 @@ struct Link {
 }
 
 impl Part {
+    /// Frames of the handedness and about the rotation that the edges vote for.
+    pub(super) fn voted(&self) -> Vec<Similarity> {
+        let most = self.edges.iter().fold(0.0, |most: f64, edge| most.max(edge.evidence));
+        let votes: Vec<Vote> = self.edges.iter().map(|edge| vote_of(edge, most)).collect();
+        settle(self.nodes.len(), &votes).into_iter().map(frame_of).collect()
+    }
+
     /// The frames of the nodes and the reports of the edges.
     pub(super) fn solve(
         &self,
         options: SynchroniseOptions,
     ) -> Result<(Vec<Similarity>, Vec<EdgeReport>), EmbedError> {
-        let most = self.edges.iter().fold(0.0, |most: f64, edge| most.max(edge.evidence));
-        let votes: Vec<Vote> = self.edges.iter().map(|edge| vote_of(edge, most)).collect();
-        let voted = settle(self.nodes.len(), &votes);
-        let mut frames: Vec<Similarity> = voted.into_iter().map(frame_of).collect();
+        let mut frames = self.voted();
         let estimates: Vec<_> = self.edges.iter().map(|edge| estimate_for(edge, &frames)).collect();
         let in_use = estimates.iter().enumerate().filter(|(_, (used, _))| *used != Estimate::Neither);
         let mut links: Vec<Link> =

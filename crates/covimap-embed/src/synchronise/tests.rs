@@ -58,7 +58,10 @@ impl World {
     }
 
     fn solve(&self) -> Synchronised {
-        synchronise(self.truth.len(), &self.edges, FREE).unwrap()
+        let found = synchronise(self.truth.len(), &self.edges, FREE).unwrap();
+        let mirrored: Vec<bool> = found.global_from_node.iter().map(|frame| frame.mirrored).collect();
+        assert_eq!(handedness(self.truth.len(), &self.edges).unwrap(), mirrored);
+        found
     }
 
     /// Largest distance of two images of the unit points between truth and result, seen from the

@@ -17,7 +17,7 @@ mod branches;
 mod seams;
 
 use covimap_embed::{
-    Estimate, Point, RelativeFrame, Similarity, SynchroniseOptions, Synchronised, synchronise,
+    Estimate, Point, RelativeFrame, Similarity, SynchroniseOptions, Synchronised, handedness, synchronise,
 };
 
 use crate::{LinkGraph, LocalMap, MapError, Observer, RegionCover, SeamsReport};
@@ -75,8 +75,7 @@ impl<'a> Patchwork<'a> {
     pub fn sides(&self, more: impl Fn(u32, u32) -> f64) -> Result<Vec<bool>, MapError> {
         let told = |seam: &Seam| Seam { evidence: seam.evidence + more(seam.a, seam.b), ..seam.clone() };
         let told: Vec<Seam> = self.seams.iter().map(told).collect();
-        let synchronised = synchronise(self.maps.len(), &open_edges(&told), RIGID)?;
-        Ok(synchronised.global_from_node.iter().map(|frame| frame.mirrored).collect())
+        Ok(handedness(self.maps.len(), &open_edges(&told))?)
     }
 
     /// One frame for all where it is known which regions lie mirrored.
