@@ -28,9 +28,6 @@ struct Remembered {
     change: Vec<f64>,
     /// `1 / step'change`.
     inverse_curvature: f64,
-    /// `step'change` of all earlier steps with this change, in their order. With these known, the recursion goes over
-    /// the vectors of all steps at once and not one after the other: of large ones it is memory that takes time.
-    with_earlier: VecDeque<f64>,
 }
 
 impl Memory {
@@ -47,17 +44,8 @@ impl Memory {
         if taken {
             if self.steps.len() == REMEMBERED {
                 self.steps.pop_front();
-                self.steps.iter_mut().for_each(|later| {
-                    later.with_earlier.pop_front();
-                });
             }
-            let with_earlier = dots(self.steps.iter().map(|past| past.step.as_slice()), &change).into();
-            self.steps.push_back(Remembered {
-                step,
-                change,
-                inverse_curvature: 1.0 / curvature,
-                with_earlier,
-            });
+            self.steps.push_back(Remembered { step, change, inverse_curvature: 1.0 / curvature });
         }
         taken
     }
@@ -71,51 +59,45 @@ impl Memory {
     /// same. `precondition` replaces `v` less the shares of the changes, one a step with the newest first, by what that
     /// approximation makes of it.
     pub fn apply(&self, mut v: Vec<f64>, precondition: impl FnOnce(&mut [f64], &[f64])) -> Vec<f64> {
-        // `s_i'(v - sum_(j > i) a_j y_j)` of each step, from the newest one back.
-        let mut along = dots(self.steps.iter().map(|past| past.step.as_slice()), &v);
-        for (i, past) in self.steps.iter().enumerate().rev() {
-            along[i] *= past.inverse_curvature;
-            let share = along[i];
-            along.iter_mut().zip(&past.with_earlier).for_each(|(earlier, with)| *earlier -= share * with);
+        let mut shares = Vec::with_capacity(self.steps.len());
+        let mut back = self.steps.iter().rev().peekable();
+        let mut along = back.peek().map(|newest| dot(&newest.step, &v));
+        while let (Some(past), Some(product)) = (back.next(), along) {
+            let share = past.inverse_curvature * product;
+            shares.push(share);
+            along =
+                add_and_dot(&mut v, -share, &past.change, back.peek().map(|before| before.step.as_slice()));
         }
-        let changes = || self.steps.iter().map(|past| past.change.as_slice());
-        add_all(&mut v, changes().zip(along.iter().map(|share| -share)));
-        let shares: Vec<f64> = along.iter().rev().copied().collect();
         precondition(&mut v, &shares);
-        // `a_i - y_i'(v + sum_(j < i) b_j s_j)` of each, from the oldest one on.
-        let mut by: Vec<f64> = Vec::with_capacity(self.steps.len());
-        for ((past, share), product) in self.steps.iter().zip(&along).zip(dots(changes(), &v)) {
-            let earlier = by.iter().zip(&past.with_earlier).map(|(by, with)| by * with);
-            by.push(share - past.inverse_curvature * (product + earlier.sum::<f64>()));
+        let mut forth = self.steps.iter().zip(shares.into_iter().rev()).peekable();
+        let mut along = forth.peek().map(|(oldest, _)| dot(&oldest.change, &v));
+        while let (Some((past, share)), Some(product)) = (forth.next(), along) {
+            let by = share - past.inverse_curvature * product;
+            along = add_and_dot(&mut v, by, &past.step, forth.peek().map(|(next, _)| next.change.as_slice()));
         }
-        add_all(&mut v, self.steps.iter().map(|past| past.step.as_slice()).zip(by));
         v
     }
 }
 
-/// The inner products of `v` with each of some vectors, in one pass.
-fn dots<'a>(vectors: impl Iterator<Item = &'a [f64]>, v: &[f64]) -> Vec<f64> {
-    let vectors: Vec<&[f64]> = vectors.collect();
-    let of_chunk = |(k, v): (usize, &[f64])| {
-        let own = k * CHUNK..k * CHUNK + v.len();
-        vectors.iter().map(|vector| of_chunk(&vector[own.clone()], v)).collect::<Vec<f64>>()
+/// `a += factor b`, and then the inner product of `a` with `with`, if that is asked for, in one pass: of large vectors
+/// it is the reading that takes time.
+fn add_and_dot(a: &mut [f64], factor: f64, b: &[f64], with: Option<&[f64]>) -> Option<f64> {
+    let Some(with) = with else {
+        add(a, factor, b);
+        return None;
     };
-    let all: Vec<Vec<f64>> = v.par_chunks(CHUNK).enumerate().map(of_chunk).collect();
-    (0..vectors.len()).map(|k| all.iter().map(|products| products[k]).sum()).collect()
+    let both = |((a, b), with): ((&mut [f64], &[f64]), &[f64])| {
+        a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * b);
+        of_chunk(with, a)
+    };
+    if a.len() <= CHUNK {
+        return Some(both(((a, b), with)));
+    }
+    let chunks = a.par_chunks_mut(CHUNK).zip(b.par_chunks(CHUNK)).zip(with.par_chunks(CHUNK));
+    Some(chunks.map(both).collect::<Vec<f64>>().iter().sum())
 }
 
-/// Adds multiples of some vectors, in one pass.
-fn add_all<'a>(v: &mut [f64], vectors: impl Iterator<Item = (&'a [f64], f64)>) {
-    let vectors: Vec<(&[f64], f64)> = vectors.collect();
-    v.par_chunks_mut(CHUNK).enumerate().for_each(|(k, v)| {
-        for (vector, factor) in &vectors {
-            let own = &vector[k * CHUNK..k * CHUNK + v.len()];
-            v.iter_mut().zip(own).for_each(|(v, own)| *v += factor * own);
-        }
-    });
-}
-
-/// Inner product of a part, in four interleaved sums that need not wait for each other.
+/// Inner product of a chunk, in four interleaved sums that need not wait for each other.
 fn of_chunk(a: &[f64], b: &[f64]) -> f64 {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let mut sums = [0.0; 4];
@@ -132,8 +114,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
         return of_chunk(a, b);
     }
     let pairs = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
-    let sums: Vec<f64> = pairs.map(|(a, b)| of_chunk(a, b)).collect();
-    sums.iter().sum()
+    pairs.map(|(a, b)| of_chunk(a, b)).collect::<Vec<f64>>().iter().sum()
 }
 
 /// `f(a_k, b_k)` for all `k`.
