@@ -74,8 +74,10 @@ fn residuals(pairs: &PairDistances, points: &[Point]) -> Vec<f64> {
         let [a, b] = [all[k].i, all[k].j].map(|end| points[end as usize]);
         ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
     };
-    let mut order: Vec<usize> = (0..all.len()).collect();
-    order.par_sort_unstable_by(|&a, &b| all[a].distance.total_cmp(&all[b].distance).then(a.cmp(&b)));
+    // Distances are not negative: their bits ascend as they do.
+    let mut order: Vec<(u64, usize)> = (0..).zip(all).map(|(k, pair)| (pair.distance.to_bits(), k)).collect();
+    order.par_sort_unstable();
+    let order: Vec<usize> = order.into_iter().map(|(_, k)| k).collect();
     let mut left = vec![0.0; all.len()];
     for bin in order.chunks((all.len() / BINS).max(BIN)) {
         // A bin spans some distance; within it lengths go with the distance.
