@@ -27,7 +27,7 @@ enum Inverse {
     /// By this factor: all pairs weigh the same.
     Factor(f64),
     /// By the factor of the tied Laplacian.
-    Factored(Factored<1>),
+    Factored(Box<Factored<1>>),
 }
 
 impl Laplacian {
@@ -50,7 +50,7 @@ impl Laplacian {
     pub fn new(n: usize, edges: &[(u32, u32, f64)]) -> Result<Self, EmbedError> {
         let (component, sizes) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
         let factored = Factored::new(&tied_laplacian(n, edges, &component))?;
-        Ok(Self { inverse: Inverse::Factored(factored), component, sizes })
+        Ok(Self { inverse: Inverse::Factored(Box::new(factored)), component, sizes })
     }
 
     /// Component of each object, numbered by its first object.
