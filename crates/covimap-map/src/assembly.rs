@@ -70,6 +70,7 @@ pub(crate) fn report(
             converged: map.converged,
             distances: map.distances,
             path_pull: map.path_pull,
+            network: map.network,
             ranges: map.ranges,
             seams,
         }

@@ -118,6 +118,7 @@ pub(crate) fn map_component(
         branch_of: vec![0],
         seams: SeamsReport::default(),
         path_pull: 0.0,
+        network: false,
         iterations: 0,
         converged: true,
         distances: None,

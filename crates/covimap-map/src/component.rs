@@ -1,20 +1,15 @@
 //! The map of one connected component, and the frame in which it is handed out.
 
-use covimap_embed::{Embedding, Newton, PairDistances, Point, StopRule, Termination, stress1, unfold};
+use covimap_embed::{PairDistances, Point};
 
-use crate::distances::{self, ComponentSteps, DistanceReport, Distances, Law};
+use crate::distances::{ComponentSteps, DistanceReport, Distances, Law};
 use crate::layout::{Layout, lay_out};
-use crate::places::{SeenSets, Sensor, refine};
-use crate::progress::begin;
+use crate::places::{SeenSets, Sensor};
+use crate::settle::{Start, settle};
 use crate::shape::Shape;
 use crate::stitch::Stitched;
 use crate::surveyor::Surveyor;
-use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport, Stage};
-
-/// The polish before anything is learnt of the distances: the first law moves landmarks by more.
-const ROUGH: StopRule = StopRule { max_iterations: 20, tolerance: 1e-3 };
-/// The polish from one law to the next.
-const A_FEW_STEPS: StopRule = StopRule { max_iterations: 6, tolerance: 1e-4 };
+use crate::{AutoParams, CoVisibility, LinkGraph, MapError, Observer, RangeReport, SeamsReport};
 
 /// A mapped component.
 pub(crate) struct ComponentMap {
@@ -27,6 +22,8 @@ pub(crate) struct ComponentMap {
     pub branch_of: Vec<u32>,
     pub seams: SeamsReport,
     pub path_pull: f64,
+    /// Whether its links are no distances in a plane.
+    pub network: bool,
     pub stress1: f64,
     pub iterations: usize,
     pub converged: bool,
@@ -76,15 +73,6 @@ pub(crate) fn map_component(
     Ok(ComponentMap { region, regions, branch_of, seams, ..settled })
 }
 
-/// Where a component is to be polished from.
-pub(crate) struct Start {
-    /// Positions in map units.
-    pub points: Vec<Point>,
-    pub shape: Shape,
-    /// Whether folds were taken out under a learnt law.
-    pub untwisted: bool,
-}
-
 impl Evidence<'_> {
     /// What the log tells of the links of the component, with the distances `fixed` of the logarithm.
     pub fn distances<'a>(
@@ -95,85 +83,6 @@ impl Evidence<'_> {
     ) -> Option<Distances<'a>> {
         Distances::new(graph, fixed, self.counts, self.members, self.steps, seed)
     }
-}
-
-/// Polishes and refines a connected component; it counts as one region.
-///
-/// The distance function is learnt where links alone make the map: path lengths hold with the fixed one.
-pub(crate) fn settle(
-    surveyor: &Surveyor,
-    fixed: &PairDistances,
-    evidence: &Evidence,
-    start: Start,
-) -> Result<ComponentMap, MapError> {
-    let Surveyor { graph, distances, params, observer, .. } = *surveyor;
-    let Start { points, shape, untwisted } = start;
-    let families = if shape.pull == 0.0 { params.distance.families() } else { Vec::new() };
-    let (rough, rounds) =
-        if untwisted { (0, distances::UNFOLDED_ROUNDS) } else { (ROUGH.max_iterations, distances::ROUNDS) };
-    let steps = rough + rounds * A_FEW_STEPS.max_iterations;
-    begin(Stage::Distances, (!families.is_empty()).then_some(steps as u64), observer)?;
-    let mut start = shape.start(fixed, points)?;
-    let terms = shape.terms(fixed)?;
-    let mut newton = Newton::new(&terms);
-    let learning = distances.filter(|_| !families.is_empty());
-    let mut law = None;
-    if let Some(distances) = learning {
-        if !untwisted {
-            start = polish(&mut newton, fixed, &start, ROUGH, observer)?.points;
-            start = unfold(fixed, &start)?.points;
-        }
-        let polish = |pairs: &_, start: &_| polish(&mut newton, pairs, start, A_FEW_STEPS, observer);
-        (law, start) = distances.learn(start, &families, rounds, polish)?;
-    }
-    let measured = distances.zip(law.as_ref()).map(|(distances, law)| distances.measure(law, Some(&start)));
-    observer.finished(Stage::Distances);
-
-    begin(Stage::Polish, Some(params.polish_stop.max_iterations as u64), observer)?;
-    let pairs = measured.as_ref().map_or(&*terms, |measured| &measured.pairs);
-    let mut polished = polish(&mut newton, pairs, &start, params.polish_stop.rule(), observer)?;
-    observer.finished(Stage::Polish);
-
-    let start = std::mem::take(&mut polished.points);
-    let least = start.clone();
-    let (points, sensor) = if params.refine_iterations == 0 || graph.landmarks() < 3 {
-        (start, None)
-    } else {
-        begin(Stage::Refine, Some(params.refine_iterations as u64), observer)?;
-        let refined = refine(graph, evidence.sets, start, params.refine_iterations, observer)?;
-        observer.finished(Stage::Refine);
-        (refined.points, Some(refined.sensor))
-    };
-    let doubted = measured.as_ref().map_or(0.0, |measured| measured.doubted);
-    Ok(ComponentMap {
-        ranges: None,
-        stress1: stress1(measured.as_ref().map_or(fixed, |measured| &measured.pairs), &points),
-        iterations: polished.iterations,
-        converged: polished.termination == Termination::Converged,
-        distances: distances.map(|distances| distances.report(law.as_ref(), doubted, &points)),
-        region: vec![0; points.len()],
-        regions: 1,
-        branch_of: vec![0],
-        seams: SeamsReport::default(),
-        path_pull: shape.pull,
-        points,
-        basis: Basis { polished: least, law, sensor },
-    })
-}
-
-/// Least stress over all terms, from a start.
-fn polish(
-    newton: &mut Newton,
-    pairs: &PairDistances,
-    start: &[Point],
-    stop: StopRule,
-    observer: &dyn Observer,
-) -> Result<Embedding, MapError> {
-    let polished = newton.minimise(pairs, start, stop, || {
-        observer.advanced(1);
-        !observer.interrupted()
-    })?;
-    if polished.termination == Termination::Interrupted { Err(MapError::Interrupted) } else { Ok(polished) }
 }
 
 /// Brings the points of a component into the frame that all maps use: the centroid at the origin,

@@ -5,11 +5,12 @@ use covimap_embed::{EmbedError, Point};
 use crate::aliases;
 use crate::assembly;
 use crate::classical;
-use crate::component::{Basis, ComponentMap, Evidence, Start, map_component, put_in_frame, settle};
+use crate::component::{Basis, ComponentMap, Evidence, map_component, put_in_frame};
 use crate::distances::{ComponentSteps, Membership};
 use crate::places::SeenSets;
 use crate::ranges;
 use crate::sensing;
+use crate::settle::{Start, in_map_units, settle};
 use crate::shape::Shape;
 use crate::surveyor::Surveyor;
 use crate::{
@@ -216,27 +217,6 @@ pub(crate) struct Known<'a> {
     /// Components to map.
     pub components: &'a [Vec<u32>],
     pub sets: &'a [SeenSets],
-}
-
-/// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
-///
-/// # Errors
-/// [`EmbedError::CoincidingPoints`] where all links have length 0.
-fn in_map_units(graph: &LinkGraph, points: Vec<Point>) -> Result<Vec<Point>, EmbedError> {
-    let (mut across, mut square) = (0.0, 0.0);
-    for (i, here) in points.iter().enumerate() {
-        for link in graph.of(i as u32) {
-            let there = points[link.to as usize];
-            let length = (there[0] - here[0]).hypot(there[1] - here[1]);
-            across += link.weight * link.distance * length;
-            square += link.weight * length * length;
-        }
-    }
-    if graph.link_count() > 0 && square <= 0.0 {
-        return Err(EmbedError::CoincidingPoints { pairs: graph.link_count() });
-    }
-    let scale = if square > 0.0 { across / square } else { 1.0 };
-    Ok(points.into_iter().map(|point| point.map(|coordinate| scale * coordinate)).collect())
 }
 
 fn check_information(counts: &CoVisibility) -> Result<(), MapError> {

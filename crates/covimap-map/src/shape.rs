@@ -30,7 +30,7 @@ use crate::{LinkGraph, MapError, RegionCover};
 /// Links a landmark from which on links alone make the map.
 const ENOUGH_LINKS: usize = 10;
 /// Most landmarks: the second sum fills in the factors of the polish.
-const MOST_LANDMARKS: usize = 10_000;
+pub(crate) const MOST_LANDMARKS: usize = 10_000;
 /// Most pivots.
 const PIVOTS: usize = 40;
 /// Pull under which the start from paths is settled.
@@ -57,7 +57,10 @@ impl Shape {
 
     /// The terms of eq. (1).
     pub fn terms<'a>(&self, links: &'a PairDistances) -> Result<Cow<'a, PairDistances>, MapError> {
-        if self.pull > 0.0 { with_paths(links, self.pull).map(Cow::Owned) } else { Ok(Cow::Borrowed(links)) }
+        if self.pull == 0.0 {
+            return Ok(Cow::Borrowed(links));
+        }
+        with_paths(links, &paths(links)?, self.pull).map(Cow::Owned)
     }
 
     /// Where to begin.
@@ -65,16 +68,24 @@ impl Shape {
         if self.pull == 0.0 {
             return Ok(stitched);
         }
-        let open = pivot_scaling(&PivotDistances::max_min(&ShortestPaths::new(links), PIVOTS)?);
+        let paths = paths(links)?;
         let stop = StopRule { max_iterations: 60, tolerance: 1e-6 };
-        Ok(newton(&with_paths(links, FIRST_PULL)?, &open, stop)?.points)
+        Ok(newton(&with_paths(links, &paths, FIRST_PULL)?, &pivot_scaling(&paths), stop)?.points)
     }
 }
 
-/// The links, and for every pivot the landmarks that it is not linked to.
-fn with_paths(links: &PairDistances, pull: f64) -> Result<PairDistances, MapError> {
+/// The paths from the pivots.
+fn paths(links: &PairDistances) -> Result<PivotDistances, MapError> {
+    Ok(PivotDistances::max_min(&ShortestPaths::new(links), PIVOTS)?)
+}
+
+/// The links, and for every pivot the paths to landmarks that it is not linked to: both sums of eq. (1).
+pub(crate) fn with_paths(
+    links: &PairDistances,
+    paths: &PivotDistances,
+    pull: f64,
+) -> Result<PairDistances, MapError> {
     let n = links.objects();
-    let paths = PivotDistances::max_min(&ShortestPaths::new(links), PIVOTS)?;
     let mut far: Vec<Pair> = Vec::with_capacity(n * paths.pivots().len());
     for (&pivot, row) in paths.pivots().iter().zip(paths.rows()) {
         for (other, &distance) in (0..n as u32).zip(row).filter(|&(other, _)| other != pivot) {

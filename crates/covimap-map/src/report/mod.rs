@@ -51,6 +51,10 @@ pub struct ComponentReport {
     /// links and most sides are guesses, path lengths keep the map open.
     #[serde(default)]
     pub path_pull: f64,
+    /// Whether its links fit no distances in a plane, so that paths by the odds against being seen together made
+    /// the map.
+    #[serde(default)]
+    pub network: bool,
     /// What its ranges came to; none if the log has too few. Then positions are in metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ranges: Option<RangeReport>,

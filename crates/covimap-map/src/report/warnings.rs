@@ -145,7 +145,8 @@ fn warnings_without_ids(
     let contested = |seams: &&SeamsReport| seams.dropped.len() as f64 > CONTESTED * seams.count as f64;
     let dropped =
         components.iter().map(|component| &component.seams).filter(contested).map(|s| s.dropped.len()).sum();
-    let pulled = components.iter().filter(|component| component.path_pull > 0.0).count();
+    let networks = components.iter().filter(|component| component.network).count();
+    let pulled = components.iter().filter(|component| component.path_pull > 0.0).count() - networks;
     let tiny = components.len() == 1 && components[0].landmarks <= 3;
     [
         warn(
@@ -177,6 +178,13 @@ fn warnings_without_ids(
             pulled,
             "components whose links are so few that most sides are guesses; the lengths of paths along links were \
              used as well, which unfolds the map and makes its bends and loops too wide"
+                .to_owned(),
+        ),
+        warn(
+            "network",
+            networks,
+            "components in which being seen together tells little of being near: no distances in a plane fit; paths \
+             along links made the map, which shows its large shape and hardly who is whose neighbour"
                 .to_owned(),
         ),
         warn(

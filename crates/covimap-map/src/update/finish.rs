@@ -96,6 +96,7 @@ impl Draft<'_> {
             branch_of,
             region,
             path_pull: report.path_pull,
+            network: report.network,
             stress1: if moved { self.stress1(members) } else { report.stress1 },
             iterations: report.iterations as usize,
             converged: report.converged,
