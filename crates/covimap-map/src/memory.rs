@@ -12,6 +12,7 @@
 //! | sets of landmarks seen | `4 S + 12 T` | from counting on |
 //! | scaling problem, as it was and as measured, and its normal equations | `128 M + 48 N` | polish |
 //! | sparse factor | see below | polish |
+//! | paths from `p` pivots, where a map may be reconsidered | `100 p N` | polish |
 //! | dense tables of the paper's method | `5 * 8 N^2` | classical |
 //!
 //! `M` is not known before counting; it is estimated from the partners of a sample of landmarks, with one pass over
@@ -21,10 +22,11 @@
 //!
 //! follows from taking patches of `d` landmarks for the nodes of a grid that is cut by nested dissection (A. George,
 //! 1973), and `c` is measured: a hall of 20 000 landmarks needs nine tenths of that, streets and corridors about a third.
-//! So the estimate is one to two times what is really taken.
+//! So the estimate is one to two times what is really taken, and more where no map has to be reconsidered.
 
 use rustc_hash::FxHashSet;
 
+use crate::network;
 use crate::{MapError, MapperParams, Method, SightingLog};
 
 /// Landmarks whose partners are counted.
@@ -60,8 +62,11 @@ impl MemoryEstimate {
         let ids: usize = log.names().iter().map(|id| id.len() + 48).sum();
         let held = 4.0 * s + 8.0 * t + ids as f64 + 16.0 * m;
         let counting = held + 4.0 * s + 4.0 * n * threads as f64;
+        let paths = 100.0 * n * network::pivots(log.names().len()) as f64;
         let mapping = match params.method {
-            Method::Auto => held + 96.0 * m + 4.0 * s + 12.0 * t + 128.0 * m + 48.0 * n + factor(n, m),
+            Method::Auto => {
+                held + 96.0 * m + 4.0 * s + 12.0 * t + 128.0 * m + 48.0 * n + factor(n, m) + paths
+            }
             Method::Classical => held + 96.0 * m + 40.0 * n * n,
         };
         let peak = |bytes: f64| (BASE + OVERHEAD * bytes) as u64;

@@ -28,7 +28,7 @@ use covimap_embed::{Pair, PairDistances, PivotDistances, Point, ShortestPaths, p
 
 use crate::MapError;
 use crate::links::ALPHA;
-use crate::shape::with_paths;
+use crate::shape::{MOST_LANDMARKS, with_paths};
 
 /// Most pivots of eq. (2), and most pairs with one.
 const PIVOTS: usize = 400;
@@ -46,6 +46,11 @@ pub(crate) struct Network {
     pub start: Vec<Point>,
 }
 
+/// Pivots for so many landmarks; none for more than are laid out as a network.
+pub(crate) fn pivots(landmarks: usize) -> usize {
+    if landmarks > MOST_LANDMARKS { 0 } else { PIVOTS.min(landmarks).min(SAMPLES / landmarks.max(1)) }
+}
+
 impl Network {
     /// Of links with the distances `sqrt(-alpha ln f)`.
     ///
@@ -58,7 +63,7 @@ impl Network {
             Pair { distance: odds, weight: 1.0 / (odds * odds), ..*pair }
         };
         let links = PairDistances::new(n, links.pairs().iter().map(by_odds).collect())?;
-        let paths = PivotDistances::max_min(&ShortestPaths::new(&links), PIVOTS.min(SAMPLES / n))?;
+        let paths = PivotDistances::max_min(&ShortestPaths::new(&links), pivots(n))?;
         // Every one of the n^2 relative errors counts as much as that of a link.
         let pull = (n * n) as f64 / links.pairs().len() as f64;
         Ok(Self { terms: with_paths(&links, &paths, pull)?, start: pivot_scaling(&paths), pull })

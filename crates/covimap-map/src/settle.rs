@@ -14,10 +14,10 @@ use covimap_embed::{
 use crate::component::{Basis, ComponentMap, Evidence};
 use crate::distances::{self, Law, Measured};
 use crate::likelihood::log_likelihood;
-use crate::network::Network;
+use crate::network::{self, Network};
 use crate::places::refine;
 use crate::progress::begin;
-use crate::shape::{MOST_LANDMARKS, Shape};
+use crate::shape::Shape;
 use crate::surveyor::Surveyor;
 use crate::{LinkGraph, MapError, Observer, SeamsReport, Stage};
 
@@ -52,7 +52,7 @@ pub(crate) fn settle(
 ) -> Result<ComponentMap, MapError> {
     let Surveyor { graph, distances, params, observer, .. } = *surveyor;
     let mut minimum = minimise(surveyor, fixed, start)?;
-    if minimum.law.is_some() && minimum.stress1 > FAIR && graph.landmarks() <= MOST_LANDMARKS {
+    if minimum.law.is_some() && minimum.stress1 > FAIR && network::pivots(graph.landmarks()) > 0 {
         minimum = reconsidered(surveyor, fixed, evidence, minimum)?;
     }
     let Minimum { points: least, law, measured, path_pull, network, iterations, converged, .. } = minimum;
@@ -155,7 +155,7 @@ fn reconsidered(
     let points = in_map_units(graph, polished.points)?;
     let again = Start { points: points.clone(), shape: Shape::FREE, untwisted: false };
     let second = minimise(surveyor, fixed, again)?;
-    let network = Minimum {
+    let paths = Minimum {
         stress1: stress1(fixed, &points),
         points,
         law: None,
@@ -170,7 +170,7 @@ fn reconsidered(
         a > (1.0 - TELLING) * b
     };
     let better = if second.stress1 < first.stress1 || tells(&second, &first) { second } else { first };
-    Ok(if better.stress1 > POOR && tells(&network, &better) { network } else { better })
+    Ok(if better.stress1 > POOR && tells(&paths, &better) { paths } else { better })
 }
 
 /// The points in the scale `sum w d r / sum w r^2` that fits the distances of the links best.
