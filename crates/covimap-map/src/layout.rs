@@ -6,9 +6,8 @@
 //!    are brought to least stress under it.
 //! 2. They are stitched. Regions at a hinge are widened to all landmarks that their cores are linked to, and solved
 //!    and stitched once more: what more they share may decide the side.
-//! 3. Where hinges are left, and they are many, the map is laid out in other ways as well, and each part of it comes
-//!    from the way that has the least stress there ([`variants`](crate::variants)).
-//! 4. Where they are many, or so many that some of their sides will be wrong, twists are taken out of the whole.
+//! 3. Where hinges are left, the map is laid out in other ways as well, and each part of it comes from the way that has
+//!    the least stress there ([`variants`](crate::variants)). Then twists are taken out of the whole.
 
 use covimap_embed::{LIFT_STEPS, Point};
 use rayon::prelude::*;
@@ -18,13 +17,11 @@ use crate::local_map::LocalMap;
 use crate::progress::begin;
 use crate::stitch::{Patchwork, Stitched};
 use crate::surveyor::Surveyor;
-use crate::{MapError, RegionCover, Stage, variants};
+use crate::variants::{self, Effort};
+use crate::{MapError, RegionCover, Stage};
 
-/// Landmarks for each hinge that is borne: with fewer, other layouts are tried.
+/// Landmarks for each hinge with which doubts are few.
 const BORNE: usize = 1000;
-
-/// Hinges that may all be right: with more, a wrong side is to be expected.
-const RIGHT: usize = 25;
 
 /// A component laid out, in map units.
 pub(crate) struct Layout {
@@ -61,11 +58,10 @@ pub(crate) fn lay_out(surveyor: &Surveyor) -> Result<Layout, MapError> {
     observer.finished(Stage::Stitch);
     let hinges = stitched.seams.hinges.len();
     let thin = hinges * BORNE > graph.landmarks();
-    let law = law.filter(|_| thin || hinges > RIGHT);
+    let law = law.filter(|_| hinges > 0);
     if let Some(law) = &law {
-        if thin {
-            stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched)?;
-        }
+        let effort = if thin { Effort::MANY_DOUBTS } else { Effort::FEW_DOUBTS };
+        stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched, effort)?;
         stitched.points = untwisted(surveyor, law, &stitched.points)?;
     }
     Ok(Layout { cover, stitched, untwisted: law.is_some() })

@@ -11,8 +11,8 @@
 //! 1. The graph is covered by regions of other sizes as well; their local maps, under the same law, are stitched
 //!    to one more layout each.
 //! 2. Pieces of some hundred landmarks, which overlap like regions, are polished from every layout, all under the
-//!    same distances and with nothing around them. That of least stress is lifted and polished once more; the better of
-//!    both stays.
+//!    same distances and with nothing around them. Where doubts are many, that of least stress is lifted and polished once more; the
+//!    better of both stays.
 //! 3. Every piece is a [witness](witnesses) of how the regions of the first cover lie to each other, and a
 //!    [contest](contest) decides the sides of regions, and those of the pieces with them. The pieces are stitched by
 //!    these sides.
@@ -37,8 +37,22 @@ mod witnesses;
 use contest::{CHALLENGES, Contest};
 use witnesses::Witnesses;
 
-/// Landmarks in the cores of the other covers.
-const CORES: [usize; 2] = [25, 50];
+/// What is done to find the parts that are wrong.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Landmarks in the cores of each of the other covers.
+    cores: &'static [usize],
+    /// Whether every piece is lifted.
+    lifted: bool,
+}
+
+impl Effort {
+    /// Where hinges are far between: nearly all pieces are right in one of two layouts.
+    pub const FEW_DOUBTS: Self = Self { cores: &[50], lifted: false };
+    /// Where they are not.
+    pub const MANY_DOUBTS: Self = Self { cores: &[25, 50], lifted: true };
+}
+
 /// Most members of a region over its core.
 const MEMBERS: usize = 10;
 /// Landmarks in the core of a piece, and its members at most.
@@ -55,12 +69,13 @@ pub(crate) fn least_stressed(
     cover: &RegionCover,
     maps: &[LocalMap],
     first: Stitched,
+    effort: Effort,
 ) -> Result<Stitched, MapError> {
     let Surveyor { graph, observer, .. } = *surveyor;
     let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
     let cut =
         |core, members| RegionCover::new(graph, RegionParams { core, members, ..surveyor.params.regions });
-    let covers = CORES.map(|core| cut(core, MEMBERS * core));
+    let covers: Vec<RegionCover> = effort.cores.iter().map(|&core| cut(core, MEMBERS * core)).collect();
     let pieces = cut(PIECE[0], PIECE[1]);
     let maps_of_pieces = (covers.len() + 2 + CHALLENGES) * pieces.regions().len();
     let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
@@ -70,7 +85,8 @@ pub(crate) fn least_stressed(
         layouts.push(surveyor.laid_out_by(law, cover)?);
     }
     let layouts: Vec<&[Point]> = layouts.iter().map(Vec::as_slice).collect();
-    let trial = Trial { surveyor, law, unseen: &distances.unseen(law) };
+    let lifted = effort.lifted;
+    let trial = Trial { surveyor, law, lifted, unseen: &distances.unseen(law) };
     let best = |piece: &Region| {
         let map = trial.least_stressed(&piece.members, &layouts)?;
         observer.advanced(covers.len() as u64 + 2);
@@ -95,13 +111,15 @@ pub(crate) fn least_stressed(
 struct Trial<'a> {
     surveyor: &'a Surveyor<'a>,
     law: &'a Law,
+    lifted: bool,
     unseen: &'a Unseen<'a>,
 }
 
 impl Trial<'_> {
-    /// The map of some landmarks from the layout that leads to the least stress, or that one lifted if it is better.
+    /// The map of some landmarks from the layout that leads to the least stress, or that one lifted if
+    /// it is better.
     fn least_stressed(&self, members: &[u32], layouts: &[&[Point]]) -> Result<LocalMap, MapError> {
-        let Self { surveyor, law, unseen } = *self;
+        let Self { surveyor, law, lifted, unseen } = *self;
         let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
         let pairs = distances.inside(law, surveyor.graph, members, None);
         let mut newton = Newton::new(&pairs);
@@ -119,6 +137,9 @@ impl Trial<'_> {
         };
         let maps: Vec<LocalMap> = layouts.iter().map(&mut from).collect::<Result<_, _>>()?;
         let best = maps.into_iter().reduce(better).expect("there is a layout (bug in covimap)");
+        if !lifted {
+            return Ok(best);
+        }
         let start = surveyor.lifted(&pairs, &best.points, &unseen.among(members), || ())?;
         Ok(better(best, polished(&start)?))
     }
