@@ -68,7 +68,7 @@ impl Room {
         };
         let best: Vec<LocalMap> = self.pieces.regions().iter().map(of_piece).collect();
         let contest = Contest {
-            trial: Trial { surveyor: &surveyor, law: &law, unseen: &distances.unseen(&law) },
+            trial: Trial { surveyor: &surveyor, law: &law, lifted: true, unseen: &distances.unseen(&law) },
             cover: &self.cover,
             patchwork: &Patchwork::new(&self.graph, &self.cover, &maps, &Silent),
             pieces: &self.pieces,
