@@ -52,7 +52,7 @@ pub use distance_rows::{DistanceRows, ShortestPaths};
 pub use distances::DistanceMatrix;
 pub use error::EmbedError;
 pub use fastmap::fastmap;
-pub use flexibility::{flexibility, flexibility_steps};
+pub use flexibility::{DistanceErrors, flexibility, flexibility_steps};
 pub use isotonic::{DissimilarityOrder, Ties, isotonic_regression};
 pub use lift::{Apart, Bound, LIFT_STEPS, lift};
 pub use newton::{Newton, newton};

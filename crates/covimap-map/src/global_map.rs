@@ -244,15 +244,11 @@ mod tests {
             let landmarks = vec![at([0.0; 2]), at([1.0; 2])];
             GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default()).unwrap()
         };
-        let sensor = |length| SensorModel {
-            range: length,
-            edge: 0.1 * length,
-            detectability: 0.9,
-            outliers: 0.01,
-            warp: 0.0,
-        };
+        let sensor =
+            |length| SensorModel { range: length, edge: 0.1 * length, detectability: 0.9, outliers: 0.01 };
         let sensing = |length| {
-            Sensing::from_parts(vec![sensor(length)], vec![0.9; 2], vec![0.25 * length; 2], &[]).unwrap()
+            let sensed = crate::Sensed { detectability: 0.9, deviation: 0.25 * length, warp: 0.125 * length };
+            Sensing::from_parts(vec![sensor(length)], vec![sensed; 2], &[]).unwrap()
         };
         let fit = ChartFit { component: 0, scale: 2.0, anchors: 2, distances: 0, rmse: 0.0, handed: false };
         let moved = map().with_positions(&[[2.0; 2], [4.0; 2]], vec![fit.clone()]).unwrap();

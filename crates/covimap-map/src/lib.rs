@@ -62,7 +62,7 @@ pub use progress::{Observer, Silent, Stage};
 pub use ranges::RangeReport;
 pub use regions::{Region, RegionCover};
 pub use report::{BuildReport, ComponentReport, Hinge, SeamReport, SeamsReport, UpdateReport, Warning};
-pub use sensing::{Sensing, SensorModel};
+pub use sensing::{Sensed, Sensing, SensorModel};
 pub use sight_lines::{SightLine, SightLines};
 pub use sightings::{
     JsonlWriter, LogCheck, LogFormat, LogProblem, LogSummary, MAX_ID_BYTES, MAX_LINE_BYTES, Range,

@@ -16,8 +16,8 @@
 //! other landmark, counted from 0 in the order of the file, and the steps that show both. A row without
 //! any has no such key, and neither has an older file. A map in a frame known from outside has the key
 //! `alignment` ([`ChartFit`]) before `landmarks`.
-//! A map that knows its sensor has more: `detectability` and `deviation` of each landmark, and after
-//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001,"warp":0.02}]`, one a
+//! A map that knows its sensor has more: `detectability`, `deviation` and `warp` of each landmark, and after
+//! the landmarks `"sensors":[{"range":0.5,"edge":0.04,"detectability":0.93,"outliers":0.001}]`, one a
 //! component, and `"occluded":[[0,12]]`, pairs of places in the list of landmarks; see [`Sensing`].
 //!
 //! A landmark takes a line, so that `diff` and `grep` work. The bytes depend on the map alone.
@@ -41,7 +41,7 @@ use serde_json::{Map, Value};
 
 use crate::{
     BuildReport, ChartFit, GlobalMap, LandmarkId, LandmarkNames, MapError, MapperParams, PlacedLandmark,
-    Sensing, SensorModel, SightLines, output,
+    Sensed, Sensing, SensorModel, SightLines, output,
 };
 
 mod binary;
@@ -70,6 +70,8 @@ struct Row<'a> {
     detectability: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     deviation: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    warp: Option<f64>,
     #[serde(default)]
     branch: u32,
     #[serde(default)]
@@ -199,14 +201,10 @@ impl GlobalMap {
             landmarks.push(row.placed());
             links.extend(row.links.iter().map(|&(to, steps)| (number, LandmarkId(to), steps)));
         }
-        // A number that is missing is as bad as one out of its range.
-        let column = |of: fn(&Row) -> Option<f64>| {
-            contents.landmarks.iter().map(|row| of(row).unwrap_or(f64::NAN)).collect()
-        };
-        let (detectability, deviation) = (column(|row| row.detectability), column(|row| row.deviation));
-        let parts = Parts { names, landmarks, detectability, deviation, links };
+        let sensed = contents.landmarks.iter().map(Row::sensed).collect();
+        let parts = Parts { names, landmarks, sensed, links };
         let Contents { report, alignment, sensors, occluded, .. } = contents;
-        let head = Head { settings, report, alignment, sensors, occluded };
+        let head = Head { settings, report, alignment, sensors, occluded, sensed: SENSED };
         head.complete(parts).map_err(|error| in_file(error, file))
     }
 }
@@ -220,15 +218,24 @@ struct Head {
     /// None if the map does not know its sensor.
     sensors: Vec<SensorModel>,
     occluded: Vec<[u32; 2]>,
+    /// How many numbers of [`Sensed`] the binary form has: the warp came last.
+    #[serde(default = "without_warp")]
+    sensed: usize,
+}
+
+/// Numbers of [`Sensed`].
+const SENSED: usize = 3;
+
+fn without_warp() -> usize {
+    SENSED - 1
 }
 
 /// What a map file says of the landmarks, in either form.
 struct Parts {
     names: LandmarkNames,
     landmarks: Vec<PlacedLandmark>,
-    /// Of no meaning without sensors, as is `deviation`.
-    detectability: Vec<f64>,
-    deviation: Vec<f64>,
+    /// Of no meaning without sensors.
+    sensed: Vec<Sensed>,
     links: Vec<(LandmarkId, LandmarkId, u32)>,
 }
 
@@ -237,17 +244,12 @@ impl Head {
         let params = known_settings(self.settings).map_err(|error| MapError::InvalidMap {
             what: format!("the settings cannot be read, {error}; build the map again"),
         })?;
-        let Parts { names, landmarks, detectability, deviation, links } = parts;
+        let Parts { names, landmarks, sensed, links } = parts;
         let lines = SightLines::from_pairs(names.len(), links)?;
         let mut map =
             GlobalMap::from_parts(names, landmarks, params, self.report)?.with_sight_lines(lines)?;
         if !self.sensors.is_empty() {
-            map = map.with_sensing(Sensing::from_parts(
-                self.sensors,
-                detectability,
-                deviation,
-                &self.occluded,
-            )?)?;
+            map = map.with_sensing(Sensing::from_parts(self.sensors, sensed, &self.occluded)?)?;
         }
         map.alignment = self.alignment;
         Ok(map)
@@ -267,7 +269,7 @@ impl<'a> Row<'a> {
         let PlacedLandmark { position: [x, y], component, region, sightings, partners, branch, loose } =
             map.landmarks()[number.index()];
         let later = map.sight_lines().of(number).iter().filter(|line| line.to > number);
-        let sensing = map.sensing();
+        let sensed = map.sensing().map(|sensing| *sensing.of(number));
         Self {
             id: Cow::Borrowed(map.names().name(number)),
             x,
@@ -277,11 +279,18 @@ impl<'a> Row<'a> {
             sightings,
             partners,
             links: later.map(|line| (line.to.0, line.steps)).collect(),
-            detectability: sensing.map(|sensing| sensing.detectability(number)),
+            detectability: sensed.map(|sensed| sensed.detectability),
+            deviation: sensed.map(|sensed| sensed.deviation),
+            warp: sensed.map(|sensed| sensed.warp),
             branch,
             loose,
-            deviation: sensing.map(|sensing| sensing.deviation(number)),
         }
+    }
+
+    /// A number that is missing is as bad as one out of its range, save for the warp.
+    fn sensed(&self) -> Sensed {
+        let [detectability, deviation] = [self.detectability, self.deviation].map(|n| n.unwrap_or(f64::NAN));
+        Sensed { detectability, deviation, warp: self.warp.unwrap_or(0.0) }
     }
 
     fn placed(&self) -> PlacedLandmark {

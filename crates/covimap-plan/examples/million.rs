@@ -16,8 +16,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use covimap_map::{
-    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, Sensing, SensorModel,
-    SightLines, delaunay_edges,
+    BuildReport, GlobalMap, LandmarkId, LandmarkNames, MapperParams, PlacedLandmark, Sensed, Sensing,
+    SensorModel, SightLines, delaunay_edges,
 };
 use covimap_plan::{Localiser, MapIndex, Objective, RoadParams, Roads};
 use rand::{RngExt, SeedableRng};
@@ -126,9 +126,9 @@ fn make_up(n: u32, walls: bool) -> Result<GlobalMap, Box<dyn Error>> {
     }
     let map = GlobalMap::from_parts(names, landmarks, MapperParams::default(), BuildReport::default())?;
     let n = map.len();
-    let sensor =
-        SensorModel { range: SEEN, edge: 0.05, detectability: DETECTED, outliers: 0.001, warp: 0.02 };
-    let sensing = Sensing::from_parts(vec![sensor], vec![DETECTED; n], vec![0.02; n], &[])?;
+    let sensor = SensorModel { range: SEEN, edge: 0.05, detectability: DETECTED, outliers: 0.001 };
+    let sensed = Sensed { detectability: DETECTED, deviation: 0.02, warp: 0.02 };
+    let sensing = Sensing::from_parts(vec![sensor], vec![sensed; n], &[])?;
     Ok(map.with_sight_lines(lines)?.with_sensing(sensing)?)
 }
 

@@ -115,7 +115,7 @@ fn bound(map: &GlobalMap, truth: &Truth) -> Result<Option<Bound>, MapError> {
         let landmarks = chart
             .landmarks
             .iter()
-            .map(|&id| (sensing.detectability(id), map.landmarks()[id.index()].sightings));
+            .map(|&id| (sensing.of(id).detectability, map.landmarks()[id.index()].sightings));
         sum.add(fit.scale * sensor.range, fit.scale * sensor.edge, nearest(&chart)?, landmarks);
     }
     Ok(sum.bound())

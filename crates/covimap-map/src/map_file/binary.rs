@@ -11,7 +11,7 @@
 //! | 4 n, t | length of each ID, the IDs in UTF-8 |
 //! | 16 n | x and y, 64-bit floats |
 //! | 24 n | component, region, sightings, partners, branch, and 1 if it is loose or 0 |
-//! | 16 n | detectability and deviation, 64-bit floats, unless the head has no sensors |
+//! | 24 n | detectability, deviation and warp, 64-bit floats, unless the head has no sensors |
 //! | 12 m | number of the first landmark, of the second, and steps that show both |
 //! | 4 | CRC-32 of all bytes before |
 //!
@@ -19,9 +19,9 @@
 
 use std::io::{self, Write};
 
-use super::{FORMAT, Head, Parts, in_file, object};
+use super::{FORMAT, Head, Parts, SENSED, in_file, object, without_warp};
 use crate::bytes::{Rest, Summed, check_sum, names, write_names};
-use crate::{GlobalMap, LandmarkId, MapError, PlacedLandmark, Sensing};
+use crate::{GlobalMap, LandmarkId, MapError, PlacedLandmark, Sensed, Sensing};
 
 /// Ending of names of files in this form.
 pub(super) const BINARY_EXTENSION: &str = "covimap";
@@ -46,6 +46,7 @@ impl GlobalMap {
             alignment: self.alignment().to_vec(),
             sensors: self.sensing().map_or(Vec::new(), |sensing| sensing.sensors().to_vec()),
             occluded: self.sensing().into_iter().flat_map(Sensing::occluded_pairs).collect(),
+            sensed: SENSED,
         })?;
         out.write_all(MAGIC)?;
         out.write_all(&(FORMAT as u32).to_le_bytes())?;
@@ -67,8 +68,10 @@ impl GlobalMap {
         }
         if let Some(sensing) = self.sensing() {
             for id in (0..self.len() as u32).map(LandmarkId) {
-                out.write_all(&sensing.detectability(id).to_le_bytes())?;
-                out.write_all(&sensing.deviation(id).to_le_bytes())?;
+                let Sensed { detectability, deviation, warp } = *sensing.of(id);
+                for number in [detectability, deviation, warp] {
+                    out.write_all(&number.to_le_bytes())?;
+                }
             }
         }
         for number in self.sight_lines().pairs().flat_map(|(a, b, steps)| [a.0, b.0, steps]) {
@@ -114,15 +117,22 @@ fn contents(rest: &mut Rest) -> Result<(Head, Parts), String> {
         let [component, region, sightings, partners, branch, loose] = *numbers;
         PlacedLandmark { position, component, region, sightings, partners, branch, loose: loose != 0 }
     };
-    let sensed = if head.sensors.is_empty() { 0 } else { landmarks };
-    let sensing = rest.list(sensed, f64::from_le_bytes, 2)?;
+    if !(without_warp()..=SENSED).contains(&head.sensed) {
+        return Err(format!("its head tells {} numbers of each landmark", head.sensed));
+    }
+    let known = if head.sensors.is_empty() { 0 } else { landmarks };
+    let known = rest.list(known, f64::from_le_bytes, head.sensed)?;
+    let sensed = |numbers: &[f64]| Sensed {
+        detectability: numbers[0],
+        deviation: numbers[1],
+        warp: numbers.get(2).copied().unwrap_or(0.0),
+    };
     let links = rest.list(lines, u32::from_le_bytes, 3)?;
     let link = |&[a, b, steps]: &[u32; 3]| (LandmarkId(a), LandmarkId(b), steps);
     let parts = Parts {
         names,
         landmarks: coordinates.as_chunks().0.iter().zip(numbers.as_chunks().0).map(placed).collect(),
-        detectability: sensing.iter().copied().step_by(2).collect(),
-        deviation: sensing.iter().copied().skip(1).step_by(2).collect(),
+        sensed: known.chunks_exact(head.sensed).map(sensed).collect(),
         links: links.as_chunks().0.iter().map(link).collect(),
     };
     rest.end()?;

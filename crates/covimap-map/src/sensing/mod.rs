@@ -29,9 +29,18 @@ pub struct SensorModel {
     pub detectability: f64,
     /// Share of the sightings that are false, in `(0, 1)`.
     pub outliers: f64,
-    /// Standard deviation of a coordinate, `>= 0`, by which the chart as a whole is bent: the same for
+}
+
+/// What is known of one landmark, lengths in map units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed {
+    /// Chance to be seen from close by, `p_i` of eq. (1) of [the module](self), in `(0, 1)`.
+    pub detectability: f64,
+    /// Standard deviation of a coordinate against the landmarks around it, `> 0`. What bends the chart as a whole is
+    /// not in it.
+    pub deviation: f64,
+    /// Standard deviation of a coordinate, `>= 0`, by which the chart as a whole is bent here: about the same for
     /// neighbours, and so without effect on what lies where among them. 0 in files that do not tell.
-    #[serde(default)]
     pub warp: f64,
 }
 
@@ -45,9 +54,24 @@ impl SensorModel {
     fn is_sound(&self) -> bool {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let share = |value: f64| value > 0.0 && value < 1.0;
-        let lengths =
-            positive(self.range) && positive(self.edge) && self.warp >= 0.0 && self.warp.is_finite();
-        lengths && share(self.detectability) && share(self.outliers)
+        positive(self.range) && positive(self.edge) && share(self.detectability) && share(self.outliers)
+    }
+
+    /// What is taken for a landmark of which the log tells nothing: it is within the range.
+    pub(crate) fn unseen(&self) -> Sensed {
+        Sensed { detectability: self.detectability, deviation: self.range, warp: 0.0 }
+    }
+}
+
+impl Sensed {
+    fn is_sound(&self) -> bool {
+        let Self { detectability, deviation, warp } = *self;
+        detectability > 0.0
+            && detectability < 1.0
+            && deviation > 0.0
+            && deviation.is_finite()
+            && warp >= 0.0
+            && warp.is_finite()
     }
 }
 
@@ -57,24 +81,22 @@ pub struct Sensing {
     /// By component.
     sensors: Vec<SensorModel>,
     /// By landmark.
-    detectability: Vec<f64>,
-    deviation: Vec<f64>,
+    sensed: Vec<Sensed>,
     /// Where the occluded partners of each landmark start in `occluded`, and at last their number.
     starts: Vec<usize>,
     occluded: Vec<u32>,
 }
 
 impl Sensing {
-    /// Puts the parts together: a sensor for every component, a detectability in `(0, 1)` and a standard
-    /// deviation `> 0` for every landmark, and each occluded pair once, in any order.
+    /// Puts the parts together: a sensor for every component, what is known of every landmark, and each occluded
+    /// pair once, in any order.
     ///
     /// # Errors
-    /// [`MapError::InvalidMap`] for a number out of its range, lists of different length, and a pair of one
-    /// landmark with itself or with one that is not there.
+    /// [`MapError::InvalidMap`] for a number out of its range, and a pair of one landmark with itself or with one that
+    /// is not there.
     pub fn from_parts(
         sensors: Vec<SensorModel>,
-        detectability: Vec<f64>,
-        deviation: Vec<f64>,
+        sensed: Vec<Sensed>,
         occluded: &[[u32; 2]],
     ) -> Result<Self, MapError> {
         let invalid =
@@ -82,15 +104,10 @@ impl Sensing {
         if let Some(component) = sensors.iter().position(|sensor| !sensor.is_sound()) {
             return invalid(format!("the sensor of component {component} is {:?}", sensors[component]));
         }
-        let n = detectability.len();
-        if deviation.len() != n {
-            return invalid(format!("{n} detectabilities and {} deviations", deviation.len()));
+        if let Some(landmark) = sensed.iter().position(|sensed| !sensed.is_sound()) {
+            return invalid(format!("what is known of landmark {landmark} is {:?}", sensed[landmark]));
         }
-        for (landmark, (&p, &d)) in detectability.iter().zip(&deviation).enumerate() {
-            if !(p > 0.0 && p < 1.0 && d > 0.0 && d.is_finite()) {
-                return invalid(format!("landmark {landmark} has detectability {p} and deviation {d}"));
-            }
-        }
+        let n = sensed.len();
         if let Some([a, b]) = occluded.iter().find(|[a, b]| a == b || *a.max(b) as usize >= n) {
             return invalid(format!("landmarks {a} and {b} of {n} are said to be occluded"));
         }
@@ -99,7 +116,7 @@ impl Sensing {
         both.dedup();
         let starts = (0..=n).map(|i| both.partition_point(|pair| (pair[0] as usize) < i)).collect();
         let occluded = both.into_iter().map(|pair| pair[1]).collect();
-        Ok(Self { sensors, detectability, deviation, starts, occluded })
+        Ok(Self { sensors, sensed, starts, occluded })
     }
 
     /// The sensor in the units of a component's chart.
@@ -117,17 +134,13 @@ impl Sensing {
         &self.sensors
     }
 
-    /// Chance to see a landmark from close by, `p_i` of eq. (1).
+    /// What is known of a landmark.
+    ///
+    /// # Panics
+    /// If the map has no such landmark.
     #[must_use]
-    pub fn detectability(&self, id: LandmarkId) -> f64 {
-        self.detectability[id.index()]
-    }
-
-    /// Standard deviation of a coordinate of a landmark against the landmarks around it, map units. What
-    /// bends the map as a whole is not in it.
-    #[must_use]
-    pub fn deviation(&self, id: LandmarkId) -> f64 {
-        self.deviation[id.index()]
+    pub fn of(&self, id: LandmarkId) -> &Sensed {
+        &self.sensed[id.index()]
     }
 
     /// The near landmarks that are hardly ever seen together with this one, ascending.
@@ -138,7 +151,7 @@ impl Sensing {
 
     /// Every occluded pair once, ascending.
     pub(crate) fn occluded_pairs(&self) -> impl Iterator<Item = [u32; 2]> {
-        (0..self.detectability.len() as u32).flat_map(|i| {
+        (0..self.sensed.len() as u32).flat_map(|i| {
             self.occluded_from(LandmarkId(i)).iter().filter(move |&&j| j > i).map(move |&j| [i, j])
         })
     }
@@ -148,16 +161,16 @@ impl Sensing {
         for (component, sensor) in (0..).zip(&mut self.sensors) {
             sensor.range *= ratio(component);
             sensor.edge *= ratio(component);
-            sensor.warp *= ratio(component);
         }
-        for (deviation, placed) in self.deviation.iter_mut().zip(landmarks) {
-            *deviation *= ratio(placed.component);
+        for (sensed, placed) in self.sensed.iter_mut().zip(landmarks) {
+            sensed.deviation *= ratio(placed.component);
+            sensed.warp *= ratio(placed.component);
         }
         self
     }
 
     pub(crate) fn landmarks(&self) -> usize {
-        self.detectability.len()
+        self.sensed.len()
     }
 }
 
@@ -180,7 +193,7 @@ pub(crate) fn learn(
     }
     let n = graph.landmarks();
     let mut sensors: Vec<SensorModel> = Vec::with_capacity(components.len());
-    let (mut detectability, mut deviation, mut occluded) = (vec![0.0; n], vec![0.0; n], Vec::new());
+    let (mut sensed, mut occluded) = (vec![None; n], Vec::new());
     for ((members, &points), sets) in components.iter().zip(charts).zip(sets) {
         if members.len() >= 3 {
             let part;
@@ -192,16 +205,15 @@ pub(crate) fn learn(
             };
             let found = learn_one(counts, graph, members, points, sets, observer)?;
             sensors.push(found.sensor);
-            for (place, &member) in members.iter().enumerate() {
-                detectability[member as usize] = found.detectability[place];
-                deviation[member as usize] = found.deviation[place];
+            for (&member, &own) in members.iter().zip(&found.sensed) {
+                sensed[member as usize] = Some(own);
             }
-            occluded.extend(occlusion::pairs(counts, members, points, &found.sensor, &found.detectability));
+            let chances: Vec<f64> = found.sensed.iter().map(|sensed| sensed.detectability).collect();
+            occluded.extend(occlusion::pairs(counts, members, points, &found.sensor, &chances));
         } else if let Some(&sensor) = sensors.first() {
             sensors.push(sensor);
             for &member in members {
-                detectability[member as usize] = sensor.detectability;
-                deviation[member as usize] = sensor.range;
+                sensed[member as usize] = Some(sensor.unseen());
             }
         }
     }
@@ -209,7 +221,9 @@ pub(crate) fn learn(
     if sensors.is_empty() {
         return Ok(None);
     }
-    Sensing::from_parts(sensors, detectability, deviation, &occluded).map(Some)
+    let sensed =
+        sensed.into_iter().map(|sensed| sensed.expect("every landmark has a component (bug in covimap)"));
+    Sensing::from_parts(sensors, sensed.collect(), &occluded).map(Some)
 }
 
 /// How much work a component is: what [`learn_one`] tells the observer of.
@@ -229,8 +243,8 @@ fn worth_of_a_step(observed: usize) -> u64 {
 /// What is learnt of one component.
 pub(crate) struct LearntSensor {
     pub sensor: SensorModel,
-    pub detectability: Vec<f64>,
-    pub deviation: Vec<f64>,
+    /// By member.
+    pub sensed: Vec<Sensed>,
 }
 
 /// Learns the sensor of a component of at least three landmarks from its finished chart; `graph` has the landmarks
@@ -254,9 +268,10 @@ pub(crate) fn learn_one(
         edge: found.sensor.edge,
         detectability: found.sensor.detectability,
         outliers: found.outliers,
-        warp: warp?,
     };
-    Ok(LearntSensor { sensor, detectability: found.detectability, deviation: found.deviation })
+    let known = found.detectability.into_iter().zip(found.deviation).zip(warp?);
+    let sensed = known.map(|((detectability, deviation), warp)| Sensed { detectability, deviation, warp });
+    Ok(LearntSensor { sensor, sensed: sensed.collect() })
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_near_pair_that_is_seldom_seen_together_is_occluded() {
-        let sensor = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
+        let sensor = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3 };
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.1], [3.0, 0.0]];
         // Open sight: min(100, 100) * 0.9 * 0.391 = 35.2 for 0 and 1, a third of it is 11.7. For 0 and 2,
         // u = 0.55: 100 * 0.9 * 0.337 = 30.3. 3 is out of reach of all.
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn few_sightings_prove_nothing() {
-        let sensor = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
+        let sensor = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3 };
         // 20 * 0.9 * 0.391 = 7.0 < 10.
         let pairs = [(LandmarkId(0), LandmarkId(1), 1)];
         let counts = CoVisibility::from_counts(40, vec![20; 2], pairs).unwrap();

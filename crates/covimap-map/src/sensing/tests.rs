@@ -4,13 +4,14 @@ use crate::{Mapper, MapperParams, Method, Silent};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-const SOUND: SensorModel =
-    SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
+const SOUND: SensorModel = SensorModel { range: 1.0, edge: 0.1, detectability: 0.9, outliers: 1e-3 };
+
+const SENSED: Sensed = Sensed { detectability: 0.5, deviation: 0.1, warp: 0.2 };
 
 #[test]
 fn parts_out_of_their_range_are_refused() {
-    let refusal = |sensor, p: &[f64], d: &[f64], pairs: &[[u32; 2]]| {
-        Sensing::from_parts(vec![sensor], p.to_vec(), d.to_vec(), pairs).unwrap_err().to_string()
+    let refusal = |sensor, sensed: &[Sensed], pairs: &[[u32; 2]]| {
+        Sensing::from_parts(vec![sensor], sensed.to_vec(), pairs).unwrap_err().to_string()
     };
     for (sensor, what) in [
         (SensorModel { range: 0.0, ..SOUND }, "range: 0.0"),
@@ -18,17 +19,21 @@ fn parts_out_of_their_range_are_refused() {
         (SensorModel { detectability: 1.0, ..SOUND }, "detectability: 1.0"),
         (SensorModel { outliers: 0.0, ..SOUND }, "outliers: 0.0"),
     ] {
-        let text = refusal(sensor, &[0.5], &[0.1], &[]);
+        let text = refusal(sensor, &[SENSED], &[]);
         assert!(text.starts_with("the sensor of component 0 is ") && text.contains(what), "{text}");
     }
-    let text = refusal(SOUND, &[0.5, 0.5], &[0.1], &[]);
-    assert_eq!(text, "2 detectabilities and 1 deviations; build the map again");
-    let text = refusal(SOUND, &[0.5, 1.5], &[0.1, 0.1], &[]);
-    assert_eq!(text, "landmark 1 has detectability 1.5 and deviation 0.1; build the map again");
-    let text = refusal(SOUND, &[0.5], &[f64::INFINITY], &[]);
-    assert_eq!(text, "landmark 0 has detectability 0.5 and deviation inf; build the map again");
+    for (wrong, what) in [
+        (Sensed { detectability: 1.5, ..SENSED }, "detectability: 1.5"),
+        (Sensed { deviation: 0.0, ..SENSED }, "deviation: 0.0"),
+        (Sensed { deviation: f64::INFINITY, ..SENSED }, "deviation: inf"),
+        (Sensed { warp: -0.1, ..SENSED }, "warp: -0.1"),
+        (Sensed { warp: f64::NAN, ..SENSED }, "warp: NaN"),
+    ] {
+        let text = refusal(SOUND, &[SENSED, wrong], &[]);
+        assert!(text.starts_with("what is known of landmark 1 is ") && text.contains(what), "{text}");
+    }
     for pair in [[0, 0], [0, 2]] {
-        let text = refusal(SOUND, &[0.5; 2], &[0.1; 2], &[pair]);
+        let text = refusal(SOUND, &[SENSED; 2], &[pair]);
         assert!(text.ends_with("of 2 are said to be occluded; build the map again"), "{text}");
     }
 }
@@ -36,7 +41,7 @@ fn parts_out_of_their_range_are_refused() {
 #[test]
 fn occluded_pairs_are_found_from_both_ends() {
     let pairs = [[3, 1], [0, 3], [1, 3]];
-    let sensing = Sensing::from_parts(vec![SOUND], vec![0.5; 4], vec![0.1; 4], &pairs).unwrap();
+    let sensing = Sensing::from_parts(vec![SOUND], vec![SENSED; 4], &pairs).unwrap();
     assert_eq!(sensing.occluded_from(LandmarkId(3)), [0, 1]);
     assert_eq!(sensing.occluded_from(LandmarkId(0)), [3]);
     assert_eq!(sensing.occluded_from(LandmarkId(2)), [0; 0]);
@@ -90,7 +95,7 @@ fn deviations_fall_with_the_root_of_the_steps() {
     let truth = scattered(80, [2.0, 4.0], 4);
     let mean = |steps| {
         let sensing = learnt(&looks(&truth, [2.0, 4.0], 0.6, steps), &truth, 0.0);
-        (0..80).map(|i| sensing.deviation(LandmarkId(i))).sum::<f64>() / 80.0
+        (0..80).map(|i| sensing.of(LandmarkId(i)).deviation).sum::<f64>() / 80.0
     };
     // Four times the steps, and so many that most are only stood for.
     let ratio = mean(1500) / mean(6000);
@@ -129,7 +134,7 @@ fn small_components_borrow_the_sensor_and_a_map_of_pairs_has_none() {
         let map = Mapper::new(params.clone()).unwrap().build(&log_of(&looks), &Silent).unwrap();
         let sensing = map.sensing().unwrap();
         assert_eq!(sensing.sensor(0), sensing.sensor(1));
-        assert_eq!(sensing.deviation(LandmarkId(41)), sensing.sensor(1).range);
+        assert_eq!(*sensing.of(LandmarkId(41)), sensing.sensor(1).unseen());
         let pair = Mapper::new(params).unwrap().build(&log_of(&vec![vec![0, 1]; 3]), &Silent).unwrap();
         assert_eq!(pair.sensing(), None);
     }

@@ -1,16 +1,18 @@
-//! How far a chart as a whole may be bent.
+//! How far a chart as a whole may be bent, and where.
 //!
 //! Every region may be in order and the chart still bent, because small errors of the links add up. What the
 //! links leave free is that of [`covimap_embed::flexibility`]; the size of their errors is read off what the
 //! chart leaves of them, `z_ij = |x_i - x_j| - m(d_ij)`, `m` the mean length of links of that distance.
 //!
-//! Chance alone would leave `(alpha / 2 d)^2 (1 - f) / n_ij` of `z^2`. What is left beyond that is wrong in a way that
-//! neighbours share, near walls as a rule, and errors shared do not cancel. So the bend is larger than that of
-//! independent errors as large as `z`, by `7.5 b^3` of the share `b` of `z^2` that is not chance. This form and its
-//! constant are fitted to simulated worlds: halls have a share of .58 and bend 1.4 times as much as independent
-//! errors would have it, street blocks .70 and 1.9 to 2.5 times, offices .74 to .75 and 3.0 to 4.5 times.
+//! Counting alone leaves `c_ij = (alpha / 2 d)^2 (1 - f) / n_ij` of `z_ij^2`. That is an error of each link for itself, and
+//! [`CHANCE`] times as large as told, because steps repeat each other. What is left beyond that is wrong in a way that
+//! neighbours share, near walls as a rule: `s_ij^2`, the mean of `z^2 - c` over all links of `i` and `j`. It falls much
+//! more slowly with the steps than chance does, and since errors shared do not cancel, it is most of what bends a map of many
+//! steps among walls.
+//!
+//! The two constants are fitted to simulated worlds; `docs/maths/localisation.md` has the figures.
 
-use covimap_embed::{PairDistances, Point, flexibility, flexibility_steps};
+use covimap_embed::{DistanceErrors, Pair, PairDistances, Point, flexibility, flexibility_steps};
 use rayon::prelude::*;
 
 use crate::links::ALPHA;
@@ -21,17 +23,19 @@ const BIN: usize = 50;
 /// Bins of about equal size.
 const BINS: usize = 40;
 /// Random errors that are tried.
-const DRAWS: usize = 12;
-/// Bend over that of independent errors, were nothing of the errors chance.
-const SHARED: f64 = 7.5;
+const DRAWS: usize = 24;
+/// Errors by chance over those of independent steps.
+const CHANCE: f64 = 2.8;
+/// Shared errors over what the chart leaves of them.
+const SHARED: f64 = 0.7;
 
 /// Steps of which [`warp`] tells.
 pub(super) fn steps() -> u64 {
     flexibility_steps(DRAWS) as u64
 }
 
-/// Standard deviation of a coordinate of a component, by what bends its chart. The observer is told of [`steps`], each
-/// of which counts for `worth`.
+/// Standard deviation of a coordinate of every landmark of a component, by what bends its chart. The observer is told of
+/// [`steps`], each of which counts for `worth`.
 ///
 /// # Errors
 /// Those of [`flexibility`].
@@ -42,29 +46,48 @@ pub(super) fn warp(
     points: &[Point],
     worth: u64,
     observer: &dyn Observer,
-) -> Result<f64, MapError> {
+) -> Result<Vec<f64>, MapError> {
     let pairs = graph.to_pairs();
-    let residuals = residuals(&pairs, points);
-    let by_chance = |i: u32, j: u32| {
-        let [a, b] = [i, j].map(|place| LandmarkId(members[place as usize]));
-        let (f, both) = (counts.frequency(a, b), f64::from(counts.together(a, b)));
-        (1.0 - f) / both
+    let chance = by_chance(counts, members, &pairs);
+    let shared = beyond_chance(&pairs, &residuals(&pairs, points), &chance);
+    let errors = DistanceErrors {
+        own: chance.into_iter().map(|variance| CHANCE * variance.sqrt()).collect(),
+        shared: shared.into_iter().map(|variance| SHARED * variance.sqrt()).collect(),
     };
-    let ratios = pairs.pairs().iter().zip(&residuals).map(|(pair, z)| {
-        let slope = ALPHA / (2.0 * pair.distance);
-        // Twins, always seen together, leave nothing to chance.
-        let variance = slope * slope * by_chance(pair.i, pair.j).max(1e-6);
-        z * z / variance
-    });
-    let ratio = ratios.sum::<f64>() / residuals.len() as f64;
     let stepped = || {
         observer.advanced(worth);
         !observer.interrupted()
     };
-    let independent = flexibility(&pairs, points, &residuals, DRAWS, 0, stepped)?;
-    let independent = independent.ok_or(MapError::Interrupted)?;
-    let shared = 1.0 - 1.0 / ratio.max(1.0);
-    Ok((SHARED * shared.powi(3)).max(1.0) * independent)
+    flexibility(&pairs, points, &errors, DRAWS, 0, stepped)?.ok_or(MapError::Interrupted)
+}
+
+/// Variance of the distance of every link by counting, `c` of [the module](self), for independent steps.
+fn by_chance(counts: &CoVisibility, members: &[u32], pairs: &PairDistances) -> Vec<f64> {
+    let variance = |pair: &Pair| {
+        let [a, b] = [pair.i, pair.j].map(|place| LandmarkId(members[place as usize]));
+        let (f, both) = (counts.frequency(a, b), f64::from(counts.together(a, b)));
+        let slope = ALPHA / (2.0 * pair.distance);
+        // Twins, always seen together, leave nothing to chance.
+        slope * slope * ((1.0 - f) / both).max(1e-6)
+    };
+    pairs.pairs().par_iter().map(variance).collect()
+}
+
+/// Mean square, over the links of both its ends, of what every link leaves beyond chance: `s^2` of [the module](self), `>= 0`.
+fn beyond_chance(pairs: &PairDistances, residuals: &[f64], chance: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); pairs.objects()];
+    for ((pair, z), chance) in pairs.pairs().iter().zip(residuals).zip(chance) {
+        for end in [pair.i, pair.j] {
+            let (sum, count) = &mut sums[end as usize];
+            *sum += z * z - chance;
+            *count += 1.0;
+        }
+    }
+    let mean = |pair: &Pair| {
+        let [a, b] = [pair.i, pair.j].map(|end| sums[end as usize]);
+        ((a.0 + b.0) / (a.1 + b.1)).max(0.0)
+    };
+    pairs.pairs().iter().map(mean).collect()
 }
 
 /// What a chart leaves of the links, without regard to sign.

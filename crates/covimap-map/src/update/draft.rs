@@ -6,7 +6,7 @@ use petgraph::unionfind::UnionFind;
 use super::Joined;
 use super::fit::Fit;
 use crate::stitch::SURE;
-use crate::{Hinge, LinkGraph, PlacedLandmark, SeamReport};
+use crate::{Hinge, LinkGraph, PlacedLandmark, SeamReport, Sensed};
 
 /// Stands for the chart, or the region, of a landmark that has none yet.
 pub(super) const NOWHERE: u32 = u32::MAX;
@@ -28,8 +28,8 @@ pub(super) struct Draft<'a> {
     pub points: Vec<Point>,
     /// Landmarks that are solved again.
     pub free: Vec<bool>,
-    pub detectability: Vec<f64>,
-    pub deviation: Vec<f64>,
+    /// By landmark; none of one of which nothing was learnt.
+    pub sensed: Vec<Option<Sensed>>,
     pub regions: Regions,
 }
 
@@ -53,14 +53,11 @@ impl<'a> Draft<'a> {
         let old = joined.old_map();
         let mut chart_of = vec![NOWHERE; n];
         let (mut polished, mut points) = (joined.old.ground.polished.clone(), Vec::with_capacity(n));
-        let (mut detectability, mut deviation) = (vec![0.0; n], vec![0.0; n]);
+        let mut sensed = vec![None; n];
         for (id, placed) in (0..).map(crate::LandmarkId).zip(old.landmarks()) {
             chart_of[id.index()] = placed.component;
             points.push(placed.position);
-            if let Some(sensing) = old.sensing() {
-                detectability[id.index()] = sensing.detectability(id);
-                deviation[id.index()] = sensing.deviation(id);
-            }
+            sensed[id.index()] = old.sensing().map(|sensing| *sensing.of(id));
         }
         polished.resize(n, [0.0; 2]);
         points.resize(n, [0.0; 2]);
@@ -73,8 +70,7 @@ impl<'a> Draft<'a> {
             polished,
             points,
             free: vec![false; n],
-            detectability,
-            deviation,
+            sensed,
             regions: Regions::of_map(old.landmarks(), old.report().regions as usize, n),
         }
     }

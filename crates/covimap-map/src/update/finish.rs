@@ -13,7 +13,7 @@ use crate::places::SeenSets;
 use crate::report::{carried_warning, joined_seams};
 use crate::sensing::{LearntSensor, learn_one, occlusion, work};
 use crate::state::{Ground, Rules, Settled};
-use crate::{GlobalMap, LandmarkId, MapError, Observer, Sensing, SensorModel, Stage, aliases};
+use crate::{GlobalMap, LandmarkId, MapError, Observer, Sensed, Sensing, SensorModel, Stage, aliases};
 
 /// Rows of one parallel task.
 const ROWS: usize = 1024;
@@ -139,30 +139,38 @@ impl Draft<'_> {
         if members.len() < 3 {
             let Some(&sensor) = sensors.first() else { return Ok(None) };
             for &member in members {
-                self.detectability[member as usize] = sensor.detectability;
-                self.deviation[member as usize] = sensor.range;
+                self.sensed[member as usize] = Some(sensor.unseen());
             }
             return Ok(Some(sensor));
         }
         let joined = self.joined;
         let graph = joined.graph.restricted_to(members);
-        let LearntSensor { sensor, detectability, deviation } =
+        let LearntSensor { sensor, sensed } =
             learn_one(&joined.counts, &graph, members, points, sets, observer)?;
         for (place, &member) in members.iter().enumerate() {
-            self.detectability[member as usize] = detectability[place];
-            self.deviation[member as usize] = deviation[place];
+            self.sensed[member as usize] = Some(sensed[place]);
             self.points[member as usize] = points[place];
         }
         Ok(Some(sensor))
     }
 
-    /// Landmarks of which nothing was learnt, for want of a refinement, are like any other.
+    /// Landmarks of which nothing was learnt, for want of a refinement, are like any other; and where new landmarks stand,
+    /// the chart is bent as it is at those linked to them, or else as it is on the whole.
     fn fill_in(&mut self, members: &[u32], sensor: SensorModel) {
-        for &member in members {
-            if self.deviation[member as usize] <= 0.0 {
-                self.deviation[member as usize] = sensor.range;
-                self.detectability[member as usize] = sensor.detectability;
-            }
+        let Some(old) = self.joined.old_map().sensing() else { return };
+        let is_old = |landmark: &u32| (*landmark as usize) < old.landmarks();
+        let warp = |among: &mut dyn Iterator<Item = u32>| {
+            let (squares, count) = among.fold((0.0, 0.0), |(squares, count), landmark| {
+                (squares + old.of(LandmarkId(landmark)).warp.powi(2), count + 1.0)
+            });
+            (count > 0.0).then(|| f64::sqrt(squares / count))
+        };
+        let on_the_whole = warp(&mut members.iter().copied().filter(is_old)).unwrap_or(0.0);
+        for &member in members.iter().filter(|member| !is_old(member)) {
+            let linked = self.joined.graph.of(member).iter().map(|link| link.to);
+            let warp = warp(&mut linked.filter(is_old)).unwrap_or(on_the_whole);
+            let known = self.sensed[member as usize].unwrap_or(sensor.unseen());
+            self.sensed[member as usize] = Some(Sensed { warp, ..known });
         }
     }
 
@@ -179,14 +187,16 @@ impl Draft<'_> {
         let mut occluded: Vec<[u32; 2]> = old.filter(|pair| !is_free(*pair) && together(pair)).collect();
         for ((members, map), sensor) in joined.components.iter().zip(maps).zip(&sensors) {
             if members.len() >= 3 && members.iter().any(|&member| self.free[member as usize]) {
-                let detectability: Vec<f64> =
-                    members.iter().map(|&member| self.detectability[member as usize]).collect();
+                let chance = |&member: &u32| {
+                    self.sensed[member as usize].map_or(sensor.detectability, |sensed| sensed.detectability)
+                };
+                let detectability: Vec<f64> = members.iter().map(chance).collect();
                 let found = occlusion::pairs(&joined.counts, members, &map.points, sensor, &detectability);
                 occluded.extend(found.into_iter().filter(|pair| is_free(*pair)));
             }
         }
-        let (detectability, deviation) = (self.detectability.clone(), self.deviation.clone());
-        Sensing::from_parts(sensors, detectability, deviation, &occluded).map(Some)
+        let sensed = self.sensed.iter().map(|sensed| sensed.expect("all is filled in (bug in covimap)"));
+        Sensing::from_parts(sensors, sensed.collect(), &occluded).map(Some)
     }
 
     fn warn(&self, map: &mut GlobalMap) {

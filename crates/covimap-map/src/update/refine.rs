@@ -6,7 +6,7 @@ use super::Joined;
 use super::draft::{Draft, NOWHERE};
 use crate::places::{Again, Model, SeenSets, refine_some};
 use crate::progress::begin;
-use crate::{LinkGraph, MapError, Observer, Stage};
+use crate::{LinkGraph, MapError, Observer, Sensed, Stage};
 
 /// Moves free landmarks to where the log is most likely, and learns how well each is known and how often missed.
 pub(super) fn refine(joined: &Joined, draft: &mut Draft, observer: &dyn Observer) -> Result<(), MapError> {
@@ -103,10 +103,8 @@ fn refine_component(
     (0..).zip(&scope).for_each(|(at, &landmark)| place[landmark as usize] = (0, at));
     let sets = SeenSets::of_steps(&joined.log, 0, steps, &place);
     let free: Vec<bool> = scope.iter().map(|&landmark| draft.free[landmark as usize]).collect();
-    // A landmark without a place so far has no detectability either.
-    let detectability = |&landmark: &u32| match draft.detectability[landmark as usize] {
-        known if draft.chart_of[landmark as usize] != NOWHERE => known,
-        _ => sensor.detectability,
+    let detectability = |&landmark: &u32| {
+        draft.sensed[landmark as usize].map_or(sensor.detectability, |sensed| sensed.detectability)
     };
     let model = Model {
         points: scope.iter().map(|&landmark| draft.points[landmark as usize]).collect(),
@@ -118,8 +116,9 @@ fn refine_component(
         refine_some(&graph, &sets, model, &free, iterations, observer)?;
     for (at, &landmark) in scope.iter().enumerate().filter(|&(at, _)| free[at]) {
         draft.points[landmark as usize] = points[at];
-        draft.detectability[landmark as usize] = detectability[at];
-        draft.deviation[landmark as usize] = deviation[at];
+        let warp = draft.sensed[landmark as usize].map_or(0.0, |sensed| sensed.warp);
+        let (detectability, deviation) = (detectability[at], deviation[at]);
+        draft.sensed[landmark as usize] = Some(Sensed { detectability, deviation, warp });
     }
     Ok(())
 }

@@ -89,7 +89,8 @@ fn pushed(joined: &Joined, draft: &Draft) -> Vec<u32> {
     let is_pushed = |&landmark: &u32| {
         beside[landmark as usize]
             && !draft.free[landmark as usize]
-            && push(joined, draft, landmark) > PUSHED * draft.deviation[landmark as usize]
+            && push(joined, draft, landmark)
+                > PUSHED * draft.sensed[landmark as usize].map_or(0.0, |sensed| sensed.deviation)
     };
     (0..joined.landmarks() as u32).into_par_iter().filter(is_pushed).collect()
 }

@@ -89,9 +89,7 @@ fn a_part_seen_again_moves_and_the_rest_does_not() {
     assert!((30..140).contains(&report.solved), "{}", report.solved);
     assert_eq!(unmoved(&state.map, &next.map), state.map.len() - report.solved as usize);
     // What is far from it keeps all that is known of it.
-    let sensing = |map: &GlobalMap, id| {
-        (map.sensing().unwrap().deviation(id), map.sensing().unwrap().detectability(id))
-    };
+    let sensing = |map: &GlobalMap, id| *map.sensing().unwrap().of(id);
     for (id, name) in (0..).map(crate::LandmarkId).zip(state.map.names().iter()) {
         if (world.place(name)[0] - 3.5).abs() > 1.5 {
             assert_eq!(sensing(&state.map, id), sensing(&next.map, id), "{name}");

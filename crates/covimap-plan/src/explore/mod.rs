@@ -181,7 +181,7 @@ fn gain(index: &MapIndex, sensing: &Sensing, id: LandmarkId, looks: f64) -> Resu
     let around = index.within(id, sensor.range + 4.0 * sensor.edge)?;
     let own = crate::Near { landmark: id, distance: 0.0 };
     let gains = std::iter::once(&own).chain(&around).map(|near| {
-        let more = looks * sensing.detectability(near.landmark) * sensor.visibility(near.distance);
+        let more = looks * sensing.of(near.landmark).detectability * sensor.visibility(near.distance);
         let n = f64::from(index.placed(near.landmark).sightings);
         index.covariance_of(near.landmark).deviation().powi(2) * more / (n + more)
     });

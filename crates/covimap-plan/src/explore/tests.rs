@@ -1,20 +1,20 @@
 use std::sync::Arc;
 
 use covimap_map::{
-    BuildReport, ComponentReport, GlobalMap, Hinge, SeamReport, SeamsReport, Sensing, SensorModel,
+    BuildReport, ComponentReport, GlobalMap, Hinge, SeamReport, SeamsReport, Sensed, Sensing, SensorModel,
 };
 
 use super::*;
 use crate::Localiser;
 use crate::fixtures::{index_of, lines_among, map_of, scattered};
 
-const SENSOR: SensorModel =
-    SensorModel { range: 0.5, edge: 0.05, detectability: 0.8, outliers: 0.01, warp: 0.0 };
+const SENSOR: SensorModel = SensorModel { range: 0.5, edge: 0.05, detectability: 0.8, outliers: 0.01 };
+const SENSED: Sensed = Sensed { detectability: 0.8, deviation: 0.1, warp: 0.0 };
 
 /// The map with a sensor of range 0.5 and one detectability for all.
 fn sensed(map: GlobalMap, components: usize) -> MapIndex {
     let n = map.len();
-    let sensing = Sensing::from_parts(vec![SENSOR; components], vec![0.8; n], vec![0.1; n], &[]).unwrap();
+    let sensing = Sensing::from_parts(vec![SENSOR; components], vec![SENSED; n], &[]).unwrap();
     MapIndex::new(Arc::new(map.with_sensing(sensing).unwrap()))
 }
 

@@ -179,8 +179,7 @@ impl Localiser {
         let mut patches: Vec<Patch> = Vec::new();
         for (component, middle) in self.crowds(&look.candidates()) {
             let sight = self.sight(look, component, middle);
-            let warp = self.sensing().sensor(component).warp;
-            let patch = Patch::around(&sight, component, middle, warp, &patches);
+            let patch = Patch::around(&sight, component, middle, &patches);
             patches.push(patch);
         }
         let best = patches.iter().map(Patch::log_evidence).fold(f64::NEG_INFINITY, f64::max);
@@ -188,11 +187,31 @@ impl Localiser {
         self.location(look, modes::modes(&patches), best + evidence.ln() - self.area.ln())
     }
 
-    /// These modes, by the log of the evidence for being anywhere on the map.
-    fn location(&self, look: &Look, modes: Vec<Mode>, on_map: f64) -> Location {
+    /// These modes, each with the bend of its chart there, by the log of the evidence for being anywhere on the map.
+    fn location(&self, look: &Look, mut modes: Vec<Mode>, on_map: f64) -> Location {
+        for mode in &mut modes {
+            let warp = self.warp(mode.component, mode.position);
+            mode.covariance[0] += warp;
+            mode.covariance[2] += warp;
+        }
         let lost = self.lost(look, on_map);
         let misfits = modes.first().map_or(Vec::new(), |best| self.misfits(look, best));
         Location { modes, lost, fits: look.ids() - misfits.len(), misfits }
+    }
+
+    /// Variance of a coordinate of a place by what bends the chart: that of the landmarks within the range, in the mean,
+    /// or else of the nearest one.
+    fn warp(&self, component: u32, place: Point) -> f64 {
+        let range = self.sensing().sensor(component).range;
+        let variance = |id: LandmarkId| self.sensing().of(id).warp.powi(2);
+        let is_near = |id: &LandmarkId| distance(self.index.placed(*id).position, place) <= range;
+        let near = self.surroundings.around(component, place, range).filter(is_near);
+        let (sum, count) = near.fold((0.0, 0.0), |(sum, count), id| (sum + variance(id), count + 1.0));
+        if count > 0.0 {
+            return sum / count;
+        }
+        let nearest = self.index.nearest_to(component, place, 1).unwrap_or_default();
+        nearest.first().map_or(0.0, |near| variance(near.landmark))
     }
 
     fn misfits(&self, look: &Look, mode: &Mode) -> Vec<LandmarkId> {

@@ -1,7 +1,6 @@
 //! The posterior on a grid, coarse first and fine where it matters, and its modes.
 
 use covimap_embed::Point;
-use covimap_map::SensorModel;
 
 use super::sight::{PLACES, Sight};
 
@@ -54,8 +53,6 @@ pub(super) struct Patch {
     component: u32,
     middle: Point,
     range: f64,
-    /// Standard deviation of the chart's own bend.
-    warp: f64,
     /// Side of a fine cell.
     side: f64,
     /// By column, then row.
@@ -64,7 +61,7 @@ pub(super) struct Patch {
 
 impl Patch {
     /// Takes the posterior; places that lie in one of the patches before belong to that one.
-    pub fn around(sight: &Sight, component: u32, middle: Point, warp: f64, before: &[Self]) -> Self {
+    pub fn around(sight: &Sight, component: u32, middle: Point, before: &[Self]) -> Self {
         let side = COARSE * sight.range;
         let blur = side / 4.0;
         let place = |at: [i32; 2], side: f64| [0, 1].map(|axis| middle[axis] + f64::from(at[axis]) * side);
@@ -108,12 +105,12 @@ impl Patch {
         }
         cells.sort_unstable_by_key(|cell| cell.at);
         let middle = [middle[0] + shift, middle[1] + shift];
-        Self { component, middle, range: sight.range, warp, side: fine, cells }
+        Self { component, middle, range: sight.range, side: fine, cells }
     }
 
     /// A posterior that is known already, by cells of a grid over the whole chart.
-    pub fn of_cells(sensor: &SensorModel, component: u32, side: f64, cells: Vec<Cell>) -> Self {
-        Self { component, middle: [0.0; 2], range: sensor.range, warp: sensor.warp, side, cells }
+    pub fn of_cells(range: f64, component: u32, side: f64, cells: Vec<Cell>) -> Self {
+        Self { component, middle: [0.0; 2], range, side, cells }
     }
 
     /// Logarithm of the integral of the likelihood over the patch, in squares of the range.
@@ -156,7 +153,7 @@ impl Patch {
     }
 }
 
-/// The modes of the posterior over all patches, the most likely first.
+/// The modes of the posterior over all patches, the most likely first. What bends the chart is not in their covariances.
 pub(super) fn modes(patches: &[Patch]) -> Vec<Mode> {
     let mut logs: Vec<f64> =
         patches.iter().flat_map(|patch| patch.cells.iter().map(|cell| cell.log)).collect();
@@ -194,7 +191,7 @@ fn modes_of(patch: &Patch, floor: f64, best: f64) -> Vec<Mode> {
             weighted().map(|(at, w)| w * (at[a] - mean[a]) * (at[b] - mean[b])).sum::<f64>() / mass
         };
         // A cell is no point: it has a spread of its own.
-        let own = patch.side * patch.side / 12.0 + patch.warp * patch.warp;
+        let own = patch.side * patch.side / 12.0;
         Mode {
             probability: mass,
             position: mean,

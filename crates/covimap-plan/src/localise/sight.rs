@@ -72,12 +72,13 @@ impl Sight {
         };
         let witness = |id: LandmarkId| {
             // A logistic edge of width s has the standard deviation s pi / sqrt(3).
-            let blur = sensing.deviation(id) * 3f64.sqrt() / PI;
+            let sensed = sensing.of(id);
+            let blur = sensed.deviation * 3f64.sqrt() / PI;
             let edge = sensor.edge.hypot(blur);
             Witness {
                 landmark: id,
                 at: at(id),
-                detectability: sensing.detectability(id),
+                detectability: sensed.detectability,
                 edge,
                 seen: is_seen(&id),
             }

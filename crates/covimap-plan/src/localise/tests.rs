@@ -1,11 +1,11 @@
-use covimap_map::{BuildReport, GlobalMap, LandmarkNames, MapperParams, PlacedLandmark, SensorModel};
+use covimap_map::{BuildReport, GlobalMap, LandmarkNames, MapperParams, PlacedLandmark, Sensed, SensorModel};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
 
 pub(super) const SENSOR: SensorModel =
-    SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3, warp: 0.0 };
+    SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 1e-3 };
 
 /// A map of landmarks at these places of these charts, called by their numbers.
 pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u32; 2]]) -> GlobalMap {
@@ -23,8 +23,8 @@ pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u3
     let report = BuildReport { steps: 1000, sightings: 8000, ..BuildReport::default() };
     let sensors = landmarks.iter().map(|placed| placed.0 as usize + 1).max().unwrap_or(1);
     let n = landmarks.len();
-    let sensing =
-        Sensing::from_parts(vec![SENSOR; sensors], vec![0.9; n], vec![deviation; n], occluded).unwrap();
+    let sensed = Sensed { detectability: 0.9, deviation, warp: 0.0 };
+    let sensing = Sensing::from_parts(vec![SENSOR; sensors], vec![sensed; n], occluded).unwrap();
     let placed = landmarks.iter().map(placed).collect();
     GlobalMap::from_parts(names, placed, MapperParams::default(), report)
         .unwrap()

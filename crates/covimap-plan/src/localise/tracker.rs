@@ -189,7 +189,7 @@ impl Tracker {
             let component = cells[0].component;
             let cells = cells.iter().map(|cell| Cell { at: cell.at, log: cell.mass.ln() }).collect();
             Patch::of_cells(
-                self.localiser.sensing().sensor(component),
+                self.localiser.sensing().sensor(component).range,
                 component,
                 self.side(component),
                 cells,

@@ -23,8 +23,10 @@ fn small() -> GlobalMap {
     let map = map.unwrap().with_sight_lines(SightLines::from_pairs(3, lines).unwrap()).unwrap();
     let fit = ChartFit { component: 0, scale: 0.5, anchors: 3, distances: 0, rmse: 0.25, handed: true };
     let map = map.with_positions(&[[0.1, -0.5], [1e-300, 2.0], [-3.0, -0.0]], vec![fit]).unwrap();
-    let sensor = SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 0.001, warp: 0.25 };
-    let sensing = Sensing::from_parts(vec![sensor], vec![0.9, 0.8, 0.7], vec![0.01, 0.02, 0.03], &[[0, 2]]);
+    let sensor = SensorModel { range: 0.5, edge: 0.04, detectability: 0.9, outliers: 0.001 };
+    let sensed = [(0.9, 0.01, 0.25), (0.8, 0.02, 0.0), (0.7, 0.03, 0.125)]
+        .map(|(detectability, deviation, warp)| Sensed { detectability, deviation, warp });
+    let sensing = Sensing::from_parts(vec![sensor], sensed.to_vec(), &[[0, 2]]);
     map.with_sensing(sensing.unwrap()).unwrap()
 }
 
