@@ -8,8 +8,10 @@
 //!    and stitched once more: what more they share may decide the side.
 //! 3. Where hinges are left, the map is laid out in other ways as well, and each part of it comes from the way that has
 //!    the least stress there ([`variants`](crate::variants)). Then twists are taken out of the whole.
+//! 4. A part can lie folded although all seams are sure, by links that are few but agree. Components without a hinge that are
+//!    not large are therefore laid out in other ways, too, and that layout is taken if it ends with clearly less stress.
 
-use covimap_embed::{LIFT_STEPS, Point};
+use covimap_embed::{LIFT_STEPS, Newton, Point, StopRule};
 use rayon::prelude::*;
 
 use crate::distances::Law;
@@ -22,6 +24,15 @@ use crate::{MapError, RegionCover, Stage};
 
 /// Landmarks for each hinge with which doubts are few.
 const BORNE: usize = 1000;
+
+/// Most landmarks of a component that is laid out in other ways as well though it has no hinge.
+const SMALL: usize = 10_000;
+/// Most landmarks of a component on which every effort is spent: it takes less than a second.
+const VERY_SMALL: usize = 3_000;
+/// Share of the stress by which the second layout must be better then.
+const CLEAR: f64 = 0.005;
+/// The polish by which layouts are judged.
+const POLISH: StopRule = StopRule { max_iterations: 12, tolerance: 1e-5 };
 
 /// A component laid out, in map units.
 pub(crate) struct Layout {
@@ -57,18 +68,40 @@ pub(crate) fn lay_out(surveyor: &Surveyor) -> Result<Layout, MapError> {
     }
     observer.finished(Stage::Stitch);
     let hinges = stitched.seams.hinges.len();
-    let thin = hinges * BORNE > graph.landmarks();
-    let law = law.filter(|_| hinges > 0);
-    if let Some(law) = &law {
-        let effort = if thin { Effort::MANY_DOUBTS } else { Effort::FEW_DOUBTS };
-        stitched = variants::least_stressed(surveyor, law, &cover, &maps, stitched, effort)?;
-        stitched.points = untwisted(surveyor, law, &stitched.points)?;
+    let doubtful = hinges * BORNE > graph.landmarks() || graph.landmarks() <= VERY_SMALL;
+    let mut untwisted = false;
+    if let Some(law) = law.filter(|_| hinges > 0 || graph.landmarks() <= SMALL) {
+        let effort = if doubtful { Effort::MANY_DOUBTS } else { Effort::FEW_DOUBTS };
+        let mut other = variants::least_stressed(surveyor, &law, &cover, &maps, &stitched.points, effort)?;
+        other.points = lifted(surveyor, &law, &other.points)?;
+        if hinges > 0 || is_clearly_better(surveyor, &law, &other.points, &stitched.points)? {
+            (stitched, untwisted) = (other, true);
+        }
     }
-    Ok(Layout { cover, stitched, untwisted: law.is_some() })
+    Ok(Layout { cover, stitched, untwisted })
+}
+
+/// Whether a layout ends with clearly less stress than another one. Of two ways to the same minimum the first is kept: lifting
+/// bends corridors.
+fn is_clearly_better(
+    surveyor: &Surveyor,
+    law: &Law,
+    layout: &[Point],
+    other: &[Point],
+) -> Result<bool, MapError> {
+    let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
+    let pairs = distances.measure(law, None).pairs;
+    let mut newton = Newton::new(&pairs);
+    let mut stress = |layout| {
+        let polished = newton.minimise(&pairs, layout, POLISH, || !surveyor.observer.interrupted())?;
+        Ok::<_, MapError>(polished.stress1.powi(2))
+    };
+    let (a, b) = (stress(layout)?, stress(other)?);
+    Ok(a < (1.0 - CLEAR) * b)
 }
 
 /// The whole, lifted under a law.
-fn untwisted(surveyor: &Surveyor, law: &Law, points: &[Point]) -> Result<Vec<Point>, MapError> {
+fn lifted(surveyor: &Surveyor, law: &Law, points: &[Point]) -> Result<Vec<Point>, MapError> {
     begin(Stage::Lift, Some(LIFT_STEPS as u64), surveyor.observer)?;
     let distances = surveyor.distances.expect("who has a law has learnt it (bug in covimap)");
     let pairs = distances.measure(law, None).pairs;

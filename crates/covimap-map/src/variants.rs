@@ -68,7 +68,7 @@ pub(crate) fn least_stressed(
     law: &Law,
     cover: &RegionCover,
     maps: &[LocalMap],
-    first: Stitched,
+    first: &[Point],
     effort: Effort,
 ) -> Result<Stitched, MapError> {
     let Surveyor { graph, observer, .. } = *surveyor;
@@ -80,11 +80,9 @@ pub(crate) fn least_stressed(
     let maps_of_pieces = (covers.len() + 2 + CHALLENGES) * pieces.regions().len();
     let regions: usize = covers.iter().map(|cover| cover.regions().len()).sum();
     begin(Stage::Variants, Some((regions + maps_of_pieces) as u64), observer)?;
-    let mut layouts = vec![first.points];
-    for cover in &covers {
-        layouts.push(surveyor.laid_out_by(law, cover)?);
-    }
-    let layouts: Vec<&[Point]> = layouts.iter().map(Vec::as_slice).collect();
+    let others = covers.iter().map(|cover| surveyor.laid_out_by(law, cover));
+    let others: Vec<Vec<Point>> = others.collect::<Result<_, _>>()?;
+    let layouts: Vec<&[Point]> = [first].into_iter().chain(others.iter().map(Vec::as_slice)).collect();
     let lifted = effort.lifted;
     let trial = Trial { surveyor, law, lifted, unseen: &distances.unseen(law) };
     let best = |piece: &Region| {

@@ -50,6 +50,22 @@ fn a_file_without_lines_of_sight_is_a_map_that_knows_none() {
 }
 
 #[test]
+fn what_is_known_of_the_sensor_stands_in_the_file_and_older_ones_know_no_warp() {
+    let sensors = r#""sensors":[{"range":0.5,"edge":0.04,"detectability":0.9,"outliers":0.001}],"occluded":[[0,1]],"report""#;
+    let warps = r#""detectability":0.8,"deviation":0.02,"warp":0.125,"branch""#;
+    let sensed = SMALL.replace(r#""report""#, sensors).replace(r#""branch""#, warps);
+    let map = parse(&sensed).unwrap();
+    let sensing = map.sensing().unwrap();
+    let wanted = Sensed { detectability: 0.8, deviation: 0.02, warp: 0.125 };
+    assert_eq!((*sensing.of(LandmarkId(1)), sensing.occluded_from(LandmarkId(0))), (wanted, &[1][..]));
+    assert_eq!(parse(&text(&map)).unwrap(), map);
+    let older = parse(&sensed.replace(r#","warp":0.125"#, "")).unwrap();
+    assert_eq!(*older.sensing().unwrap().of(LandmarkId(1)), Sensed { warp: 0.0, ..wanted });
+    let without = parse(&sensed.replace(r#""deviation":0.02,"#, "")).unwrap_err().to_string();
+    assert!(without.contains("what is known of landmark 0 is") && without.contains("NaN"), "{without}");
+}
+
+#[test]
 fn the_frame_of_an_aligned_map_stands_in_the_file() {
     let fit = ChartFit { component: 0, scale: 0.5, anchors: 3, distances: 1, rmse: 0.1, handed: true };
     let map = parse(SMALL).unwrap().with_positions(&[[1.0, 2.0], [3.0, 4.5]], vec![fit]).unwrap();

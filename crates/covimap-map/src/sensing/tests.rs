@@ -103,6 +103,24 @@ fn deviations_fall_with_the_root_of_the_steps() {
 }
 
 #[test]
+fn warps_fall_with_the_steps_and_are_least_in_the_middle_of_a_long_hall() {
+    let truth = scattered(160, [1.0, 8.0], 4);
+    let [few, many] = [1500, 6000].map(|steps| learnt(&looks(&truth, [1.0, 8.0], 0.6, steps), &truth, 0.0));
+    let rms = |sensing: &Sensing, from: f64, to: f64| {
+        let there = (0..160).filter(|&i| (from..to).contains(&truth[i as usize][1]));
+        let squares: Vec<f64> = there.map(|i| sensing.of(LandmarkId(i)).warp.powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    // Four times the steps halve what is chance, and leave what the walls make wrong.
+    let ratio = rms(&few, 0.0, 8.0) / rms(&many, 0.0, 8.0);
+    assert!((1.2..2.0).contains(&ratio), "{ratio}");
+    for sensing in [&few, &many] {
+        let middle = rms(sensing, 1.5, 2.5);
+        assert!(rms(sensing, 0.0, 0.5) > 1.3 * middle && rms(sensing, 7.5, 8.0) > 1.3 * middle);
+    }
+}
+
+#[test]
 fn a_wall_occludes_the_pairs_across_it() {
     // Two halls side by side, of which one sees nothing of the other but through landmark 0 and 40.
     let truth: Vec<Point> = scattered(80, [2.0, 2.0], 4);

@@ -67,6 +67,28 @@ fn a_map_without_landmarks_is_a_map() {
 }
 
 #[test]
+fn a_file_from_before_there_was_a_warp_is_a_map_without_bends() {
+    let whole = bytes_of(&small());
+    let head = 20 + u64::from_le_bytes(whole[12..20].try_into().unwrap()) as usize;
+    let old_head = String::from_utf8(whole[20..head].to_vec()).unwrap().replace(",\"sensed\":3", "");
+    // Sizes, lengths and letters of the IDs, coordinates and numbers of three landmarks.
+    let sensed = head + 24 + 12 + 11 + 48 + 72;
+    let kept = |place: &usize| (place - sensed) % 24 < 16;
+    let of_landmarks: Vec<u8> = (sensed..sensed + 72).filter(kept).map(|place| whole[place]).collect();
+    let length = (old_head.len() as u64).to_le_bytes();
+    let parts = [&whole[..12], &length, old_head.as_bytes(), &whole[head..sensed], &of_landmarks];
+    let old = summed([&parts.concat()[..], &whole[sensed + 72..]].concat());
+    let map = GlobalMap::parse_binary(&old, "m").unwrap();
+    for id in [0, 1, 2].map(LandmarkId) {
+        let wanted = Sensed { warp: 0.0, ..*small().sensing().unwrap().of(id) };
+        assert_eq!(*map.sensing().unwrap().of(id), wanted);
+    }
+    let later = String::from_utf8(whole[20..head].to_vec()).unwrap().replace("\"sensed\":3", "\"sensed\":4");
+    let later = [&whole[..20], later.as_bytes(), &whole[head..]].concat();
+    assert!(refusal(&summed(later)).contains("its head tells 4 numbers of each landmark"));
+}
+
+#[test]
 fn no_byte_can_be_changed_or_lost_unnoticed() {
     let whole = bytes_of(&small());
     for place in 0..whole.len() {
