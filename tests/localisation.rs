@@ -61,7 +61,7 @@ fn locate(floor: Floor, landmarks: usize, steps: u64, seed: u64) -> Found {
 fn check(floor: &Floor, steps: u64) {
     let (mut errors, mut inside) = (Vec::new(), 0.0);
     for (landmarks, seed) in [(300, 1), (400, 2), (500, 3)] {
-        let found = locate(floor.clone(), landmarks, steps, seed);
+        let found = locate(*floor, landmarks, steps, seed);
         assert!(found.lost * 200 <= found.errors.len(), "{} lost of {}", found.lost, found.errors.len());
         inside += found.inside;
         errors.extend(found.errors);

@@ -34,7 +34,7 @@ pub struct SensorModel {
 /// What is known of one landmark, lengths in map units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
-    /// Chance to be seen from close by, `p_i` of eq. (1) of [the module](self), in `(0, 1)`.
+    /// Chance to be seen from close by, by which [`SensorModel::visibility`] is multiplied, in `(0, 1)`.
     pub detectability: f64,
     /// Standard deviation of a coordinate against the landmarks around it, `> 0`. What bends the chart as a whole is
     /// not in it.

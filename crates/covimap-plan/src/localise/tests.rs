@@ -132,6 +132,41 @@ fn the_truth_is_where_the_region_says() {
 }
 
 #[test]
+fn the_bend_of_the_chart_at_a_place_is_in_the_region() {
+    let landmarks = hall(160, 0);
+    // Bent by .1 where x < 1.2, by .3 where x > 2.8, and by .2 in between.
+    let warp = |x: f64| {
+        if x < 1.2 {
+            0.1
+        } else if x > 2.8 {
+            0.3
+        } else {
+            0.2
+        }
+    };
+    let straight = map_of(&landmarks, 0.02, &[]);
+    let sensed =
+        |placed: &(u32, Point)| Sensed { detectability: 0.9, deviation: 0.02, warp: warp(placed.1[0]) };
+    let sensing = Sensing::from_parts(vec![SENSOR], landmarks.iter().map(sensed).collect(), &[]).unwrap();
+    let bent = localiser(straight.clone().with_sensing(sensing).unwrap());
+    let straight = localiser(straight);
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    // Far enough from where the warp changes, all landmarks in range have the same.
+    for (x, wanted) in [(0.5, 0.1), (2.0, 0.2), (3.5, 0.3)] {
+        let known = seen_from([x, 2.0], landmarks.iter().map(|landmark| landmark.1), &mut rng);
+        let look = Look { known, ..Look::default() };
+        let mut tracker = Tracker::new(Arc::new(bent.clone()), TrackParams::default()).unwrap();
+        let [a, b, tracked] = [straight.locate(&look), bent.locate(&look), tracker.update(&look)];
+        let [a, b, tracked] = [&a, &b, &tracked].map(|location| location.best().unwrap());
+        assert_eq!(a.position, b.position);
+        for (k, wanted) in [(0, wanted * wanted), (1, 0.0), (2, wanted * wanted)] {
+            assert!((b.covariance[k] - a.covariance[k] - wanted).abs() < 1e-12, "{x}: {b:?} {a:?}");
+        }
+        assert!(tracked.covariance[0] > wanted * wanted && tracked.covariance[2] > wanted * wanted);
+    }
+}
+
+#[test]
 fn the_chart_is_the_one_whose_landmarks_are_seen() {
     let landmarks: Vec<_> = hall(200, 0).into_iter().chain(hall(100, 1)).collect();
     let localiser = localiser(map_of(&landmarks, 0.01, &[]));
