@@ -77,9 +77,16 @@ impl SightLines {
     /// The lines of sight of one landmark, ascending; none in a map that does not know them.
     #[must_use]
     pub fn of(&self, landmark: LandmarkId) -> &[SightLine] {
+        &self.lines[self.row(landmark)]
+    }
+
+    /// Where the lines of a landmark stand in a list of those of all landmarks, one landmark after the other: each line of sight is
+    /// in it twice.
+    #[must_use]
+    pub fn row(&self, landmark: LandmarkId) -> std::ops::Range<usize> {
         match self.starts.get(landmark.index()..landmark.index() + 2) {
-            Some(ends) => &self.lines[ends[0] as usize..ends[1] as usize],
-            None => &[],
+            Some(ends) => ends[0] as usize..ends[1] as usize,
+            None => 0..0,
         }
     }
 

@@ -52,7 +52,7 @@ impl Cells {
         for cell in 0..self.starts.len() as u32 - 1 {
             let places = self.places(cell);
             let leaves =
-                |&id: &LandmarkId| roads.lines(id).any(|line| !places.contains(&self.place(line.to)));
+                |&id: &LandmarkId| roads.lines(id).any(|(line, _)| !places.contains(&self.place(line.to)));
             let here = &self.order[places.start as usize..places.end as usize];
             let (border, inside): (Vec<LandmarkId>, Vec<LandmarkId>) = here.iter().partition(|id| leaves(id));
             self.inner.push(places.start + border.len() as u32);
@@ -139,7 +139,7 @@ impl Cutter<'_> {
             if third.contains(&at) {
                 best = best.min((crossing, at.abs_diff(piece.len() / 2), at));
             }
-            for line in self.roads.lines(id) {
+            for (line, _) in self.roads.lines(id) {
                 let to = self.place[line.to.index()].load(Ordering::Relaxed) as usize;
                 if places.contains(&to) {
                     crossing += if to > start + at { 1 } else { -1 };

@@ -20,11 +20,11 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use covimap_embed::Point;
 use covimap_map::LandmarkId;
 use rayon::prelude::*;
 
 use super::Roads;
+use super::bound::Bound;
 use super::cells::Cells;
 use crate::search::{AStar, RouteSearch, SearchGraph};
 
@@ -35,8 +35,8 @@ const CLEAR: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(super) struct Overlay {
     cells: Cells,
-    /// By place.
-    positions: Vec<Point>,
+    /// Of landmarks by place.
+    bound: Bound,
     /// Those from place p are `passages[starts[p]..starts[p + 1]]`: ways inside its cell, and roads out of it.
     starts: Vec<u32>,
     passages: Vec<(u32, f64)>,
@@ -46,7 +46,6 @@ impl Overlay {
     /// Over cells of at most so many landmarks: see the module. On all threads.
     pub fn new(roads: &Roads<'_>, most: usize) -> Self {
         let cells = Cells::new(roads, most);
-        let positions = cells.order.iter().map(|&id| roads.index.placed(id).position).collect();
         let of_cell = |cell| Inside { roads, cells: &cells, cell }.passages();
         let by_cell: Vec<Vec<Vec<(u32, f64)>>> =
             (0..cells.count() as u32).into_par_iter().map(of_cell).collect();
@@ -57,7 +56,7 @@ impl Overlay {
             passages.extend(from);
             starts.push(passages.len() as u32);
         }
-        Self { cells, positions, starts, passages }
+        Self { bound: roads.bound.reordered(&cells.order), cells, starts, passages }
     }
 }
 
@@ -89,7 +88,7 @@ struct Across<'a> {
 
 impl SearchGraph for Across<'_> {
     fn landmarks(&self) -> usize {
-        self.overlay.positions.len()
+        self.overlay.cells.order.len()
     }
 
     fn roads_from(&self, from: LandmarkId) -> impl Iterator<Item = (LandmarkId, f64)> {
@@ -103,8 +102,7 @@ impl SearchGraph for Across<'_> {
     }
 
     fn at_least(&self, from: LandmarkId, to: LandmarkId) -> f64 {
-        let [a, b] = [from, to].map(|place| self.overlay.positions[place.index()]);
-        self.roads.least_rate * ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+        self.overlay.bound.at_least(from, to)
     }
 }
 

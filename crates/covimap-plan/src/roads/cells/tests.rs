@@ -1,6 +1,7 @@
 use super::*;
 use crate::RoadParams;
 use crate::fixtures::{index_of, lines_among, scattered};
+use crate::roads::Bound;
 
 /// Checks all that cells promise.
 fn check(cells: &Cells, roads: &Roads<'_>, most: usize) {
@@ -13,7 +14,7 @@ fn check(cells: &Cells, roads: &Roads<'_>, most: usize) {
         assert!((1..=most).contains(&places.len()), "{places:?}");
         for place in places.clone() {
             assert_eq!(cells.of(place), cell);
-            let mut ends = roads.lines(cells.order[place as usize]).map(|line| cells.place(line.to));
+            let mut ends = roads.lines(cells.order[place as usize]).map(|(line, _)| cells.place(line.to));
             assert_eq!(ends.any(|end| !places.contains(&end)), cells.border(cell).contains(&place));
         }
     }
@@ -27,7 +28,9 @@ fn every_landmark_is_in_one_cell_and_those_with_roads_out_come_first() {
         lines.truncate(1000);
         let index = index_of(&points, &lines);
         // One landmark has no road, and a map of one no line of sight.
-        let roads = Roads { index: &index, params: RoadParams::default(), least_rate: 1.0, overlay: None };
+        let bound = Bound::of_lengths(index.map());
+        let roads =
+            Roads { index: &index, params: RoadParams::default(), costs: Vec::new(), bound, overlay: None };
         for most in [1, 2, 7, 100, 1000] {
             check(&Cells::new(&roads, most), &roads, most);
         }
