@@ -204,6 +204,7 @@ pub fn name(stage: Stage) -> &'static str {
         Stage::Polish => "polish",
         Stage::Distances => "distances",
         Stage::Refine => "refine",
+        Stage::Ranges => "ranges",
         Stage::Classical => "classical",
         Stage::Sensor => "sensor",
     }
@@ -219,6 +220,7 @@ fn unit(stage: Stage) -> &'static str {
         Stage::LocalMaps => "regions",
         Stage::Variants => "regions and pieces",
         Stage::Refine => "iterations at most",
+        Stage::Ranges => "rounds",
         Stage::Stitch | Stage::Lift | Stage::Distances | Stage::Polish => "steps at most",
         Stage::Regions | Stage::Classical | Stage::Sensor => "steps",
     }

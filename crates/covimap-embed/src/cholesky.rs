@@ -28,8 +28,23 @@ use panels::Panels;
 /// Unknowns of one parallel task.
 const CHUNK: usize = 1 << 15;
 
-/// A symmetric positive definite sparse matrix of `B` unknowns an object, with its Cholesky factor.
-pub(crate) struct Factored<const B: usize> {
+/// The Cholesky factor of a sparse symmetric positive definite matrix of `B` unknowns an object: `A = L L'`.
+///
+/// The objects are eliminated in an order of little fill (approximate minimum degree). The same matrix gives the same bits for any
+/// number of threads.
+///
+/// ```
+/// use covimap_embed::{LowerTriangle, SparseCholesky};
+///
+/// // [[4, -1, 0], [-1, 3, -1], [0, -1, 2]]
+/// let blocks = [4.0, -1.0, 3.0, -1.0, 2.0].map(|value| [[value]]).to_vec();
+/// let matrix = LowerTriangle { starts: vec![0, 2, 4, 5], rows: vec![0, 1, 1, 2, 2], blocks };
+/// let mut solution = [[2.0], [2.0], [4.0]];
+/// SparseCholesky::new(&matrix)?.solve(&mut solution);
+/// assert!(solution.iter().zip([1.0, 2.0, 3.0]).all(|([x], wanted)| (x - wanted).abs() < 1e-12));
+/// # Ok::<(), covimap_embed::EmbedError>(())
+/// ```
+pub struct SparseCholesky<const B: usize> {
     structure: Structure,
     values: Vec<f64>,
 }
@@ -43,13 +58,17 @@ struct Structure {
     panels: Panels,
 }
 
-/// Lower triangle by columns, in blocks of `B` by `B` that are symmetric in themselves: an object has `B` unknowns, the
-/// one after the other.
-pub(crate) struct LowerTriangle<const B: usize> {
+/// The lower triangle of a symmetric matrix by columns, in blocks of `B` by `B`: an object has `B` unknowns, the one after the other.
+///
+/// `blocks[k][a][b]` is the entry in row `B rows[k] + a` and column `B c + b` of the matrix, `c` being the column of block
+/// `k`. Blocks of the diagonal are whole, and symmetric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LowerTriangle<const B: usize> {
     /// Where the blocks of each column start, and at last their number.
     pub starts: Vec<u32>,
-    /// Row of each block, ascending within a column; the first one is that of the diagonal.
+    /// Row of each block, ascending within a column; the first one is that of the diagonal, and all must have it.
     pub rows: Vec<u32>,
+    /// As `rows` has them.
     pub blocks: Vec<[[f64; B]; B]>,
 }
 
@@ -90,7 +109,7 @@ impl<const B: usize> LowerTriangle<B> {
                 let (row, block) = (self.rows[entry] as usize, &self.blocks[entry]);
                 add(&mut y[row], product(block, x[column]));
                 if row != column {
-                    add(&mut y[column], product(block, x[row]));
+                    add(&mut y[column], product(&transposed(block), x[row]));
                 }
             }
         }
@@ -98,11 +117,20 @@ impl<const B: usize> LowerTriangle<B> {
     }
 }
 
-impl<const B: usize> Factored<B> {
+/// A block with rows for columns.
+fn transposed<const B: usize>(block: &[[f64; B]; B]) -> [[f64; B]; B] {
+    std::array::from_fn(|a| std::array::from_fn(|b| block[b][a]))
+}
+
+impl<const B: usize> SparseCholesky<B> {
     /// Largest relative residual of the probe solve that is taken for a sound factorisation.
     const SOUND: f64 = 1e-6;
 
-    /// Factors `A = L L'` in an order with little fill, and checks the factor on a known solution.
+    /// Factors a matrix in an order with little fill, and checks the factor on a known solution.
+    ///
+    /// # Errors
+    /// [`EmbedError::Singular`] for a matrix that is not positive definite to the accuracy of the numbers;
+    /// [`EmbedError::OutOfMemory`].
     pub fn new(matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
         let structure = Structure::of(matrix)?;
         let factored = Self::numeric(structure, Vec::new(), matrix)?;
@@ -112,6 +140,9 @@ impl<const B: usize> Factored<B> {
 
     /// Factors another matrix with the same places of entries and entries of like size, without ordering anew and
     /// without a check, in the memory of this factor.
+    ///
+    /// # Errors
+    /// As [`SparseCholesky::new`].
     pub fn refactor(self, matrix: &LowerTriangle<B>) -> Result<Self, EmbedError> {
         Self::numeric(self.structure, self.values, matrix)
     }
@@ -150,6 +181,9 @@ impl<const B: usize> Factored<B> {
     }
 
     /// Replaces `K` right-hand sides, an unknown a row, by the solutions.
+    ///
+    /// # Panics
+    /// If there are not as many rows as the matrix has.
     pub fn solve<const K: usize>(&self, rows: &mut [[f64; K]]) {
         let Structure { order, places, panels, .. } = &self.structure;
         let of_objects: &mut [[[f64; K]; B]] = rows.as_chunks_mut().0;

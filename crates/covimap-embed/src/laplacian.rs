@@ -10,7 +10,7 @@
 //! A complete list with equal weights `w` needs no factor: `V = w (n I - 11')`, so that the
 //! centred solution is `Y / (w n)`.
 
-use crate::cholesky::{Factored, LowerTriangle};
+use crate::cholesky::{LowerTriangle, SparseCholesky};
 use crate::{EmbedError, PairDistances, Point};
 
 /// `V` of a weighted pair list, ready for solves, with the components that it falls into.
@@ -27,7 +27,7 @@ enum Inverse {
     /// By this factor: all pairs weigh the same.
     Factor(f64),
     /// By the factor of the tied Laplacian.
-    Factored(Box<Factored<1>>),
+    Factored(Box<SparseCholesky<1>>),
 }
 
 impl Laplacian {
@@ -49,7 +49,7 @@ impl Laplacian {
     /// Factors the Laplacian of `n` objects and weighted edges `(i, j, w)`, `i < j`, ascending.
     pub fn new(n: usize, edges: &[(u32, u32, f64)]) -> Result<Self, EmbedError> {
         let (component, sizes) = components(n, edges.iter().map(|&(i, j, _)| (i, j)));
-        let factored = Factored::new(&tied_laplacian(n, edges, &component))?;
+        let factored = SparseCholesky::new(&tied_laplacian(n, edges, &component))?;
         Ok(Self { inverse: Inverse::Factored(Box::new(factored)), component, sizes })
     }
 

@@ -42,6 +42,7 @@ mod unfold;
 mod wide;
 
 pub use anchored::anchored_while;
+pub use cholesky::{LowerTriangle, SparseCholesky};
 pub use classical::{ClassicalScaling, classical_scaling};
 pub use disparity::{PairBounds, Transformation};
 pub use distance_function::{

@@ -38,7 +38,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use crate::cholesky::Factored;
+use crate::cholesky::SparseCholesky;
 use crate::descent::{Descent, Objective, Reached};
 use crate::laplacian::{components, tied_laplacian};
 use crate::solve::check_start;
@@ -147,7 +147,7 @@ struct Unfolding {
     /// `w_i`.
     weights: Vec<f64>,
     /// Of `V + mu_0 diag(w_i)`.
-    factored: Factored<1>,
+    factored: SparseCholesky<1>,
 }
 
 impl Unfolding {
@@ -170,7 +170,7 @@ impl Unfolding {
             bounds: Springs::none(n),
             press: PRESS[0],
             weights,
-            factored: Factored::new(&matrix)?,
+            factored: SparseCholesky::new(&matrix)?,
         })
     }
 

@@ -131,7 +131,7 @@ impl Mapper {
         };
         if self.params.method == Method::Auto {
             let mut own: Vec<&mut Vec<Point>> = maps.iter_mut().map(|map| &mut map.points).collect();
-            let ranged = ranges::fit(log, &components, &mut own);
+            let ranged = ranges::fit(log, &counts, &components, &mut own, observer)?;
             maps.iter_mut().zip(ranged).for_each(|(map, ranged)| map.ranges = ranged);
         }
         let charts: Vec<&[Point]> = maps.iter().map(|map| map.points.as_slice()).collect();

@@ -25,6 +25,8 @@ pub enum Stage {
     Distances,
     /// Moving landmarks to where the log is most likely; counted in iterations.
     Refine,
+    /// Fitting the ranges that the log tells; counted in rounds.
+    Ranges,
     /// The paper's dense scaling.
     Classical,
     /// Learning the sensor that the finished map and the log imply; counted in sets of sightings, and in what takes as

@@ -22,7 +22,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, Par, Spec};
 use rayon::prelude::*;
 
-use super::{LowerTriangle, Structure};
+use super::{LowerTriangle, Structure, transposed};
 
 /// Multiplications from which on a front is eliminated by all threads.
 const LARGE: usize = 1 << 24;
@@ -134,7 +134,9 @@ impl Structure {
         let height = columns.len() + rows.len();
         for (k, column) in columns.clone().step_by(B).enumerate() {
             let mut later = 0;
-            for &(row, block) in self.folded.column(column as usize / B) {
+            let at = column as usize / B;
+            let object = self.order[at];
+            for &(row, block) in self.folded.column(at) {
                 let row = B as u32 * row;
                 let place = if row < columns.end {
                     (row - columns.start) as usize
@@ -142,7 +144,11 @@ impl Structure {
                     later += rows[later..].iter().take_while(|&&own| own < row).count();
                     columns.len() + later
                 };
-                for (b, values) in matrix.blocks[block as usize].iter().enumerate() {
+                // By columns of the factor: those of a block that changed sides are its rows.
+                let own = &matrix.blocks[block as usize];
+                let changed_sides = !matrix.column(object as usize).contains(&(block as usize));
+                let by_columns = if changed_sides { *own } else { transposed(own) };
+                for (b, values) in by_columns.iter().enumerate() {
                     let at = (B * k + b) * height + place;
                     panel[at..at + B].copy_from_slice(values);
                 }

@@ -1,6 +1,6 @@
 //! The damped second derivative of the stress, eq. (1) of the parent module, and its factor.
 
-use crate::cholesky::{Factored, LowerTriangle};
+use crate::cholesky::{LowerTriangle, SparseCholesky};
 use crate::laplacian::components;
 use crate::{EmbedError, PairDistances, Point};
 
@@ -10,7 +10,7 @@ pub(crate) struct NormalEquations {
     /// One object of each component, tied down against shifts.
     tied: Vec<bool>,
     /// The factor of the last step, whose ordering serves the next.
-    factored: Option<Factored<2>>,
+    factored: Option<SparseCholesky<2>>,
 }
 
 impl NormalEquations {
@@ -46,7 +46,7 @@ impl NormalEquations {
     ) -> Result<(), EmbedError> {
         self.assemble(pairs, points, damping);
         self.factored = Some(match self.factored.take() {
-            None => Factored::new(&self.matrix),
+            None => SparseCholesky::new(&self.matrix),
             Some(last) => last.refactor(&self.matrix),
         }?);
         Ok(())

@@ -21,7 +21,7 @@
 
 use super::bridges::bridges;
 use crate::EmbedError;
-use crate::cholesky::Factored;
+use crate::cholesky::SparseCholesky;
 use crate::laplacian::tied_laplacian;
 
 /// Steps before the fit stands as it is.
@@ -188,7 +188,7 @@ struct System {
     pairs: Vec<(u32, u32)>,
     /// The pair of each edge.
     pair_of: Vec<usize>,
-    factored: Option<Factored<1>>,
+    factored: Option<SparseCholesky<1>>,
 }
 
 impl System {
@@ -220,7 +220,7 @@ impl System {
         }
         let matrix = tied_laplacian(self.nodes, &pairs, &vec![0; self.nodes]);
         let factored = match self.factored.take() {
-            None => Factored::new(&matrix)?,
+            None => SparseCholesky::new(&matrix)?,
             Some(factored) => factored.refactor(&matrix)?,
         };
         factored.solve(&mut rhs);

@@ -8,14 +8,16 @@
 //! - on the map as it is, the scale becomes `sum w r d / sum w d^2`, `d = |x_i - y_t|`;  (1)
 //! - after that all landmarks move at once to where the ranges fit best, neighbours being held at their distance
 //!   by the map: see `reduced`;
-//! - the variance of a range, `v = a + b d^2`, is fitted to what the ranges miss.
+//! - the variance of a range, `v = a + b d^2`, is fitted to what the ranges miss, and the error of the map to what its
+//!   neighbours miss.
 //!
-//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2 / v))^2 / v` (Geman and McClure), `c` being 3: one
-//! that is far off has no say. A step takes part if it has ranges to three landmarks or more.
+//! A range that misses by `e` has the weight `w = (c^2 / (c^2 + e^2 / v))^2 / v` (Geman and McClure): one that is far off has no
+//! say. `c` comes down to 3 from 192, so that ranges are not dropped for errors of the map that they are about to mend. A step takes part if it has ranges to three landmarks or more.
 //! `docs/maths/ranges.md` has reasons and figures.
 //!
 //! # Complexity
-//! `O(m)` a product with the matrix for `m` ranges, at most 60 of them a round; some 40 bytes a range.
+//! `sum k^2` a round over the steps with `k` ranges, and a sparse factorisation of order `2 n`; some 60 bytes a range, and 32 for
+//! any two landmarks of which a step has ranges, and what the factor fills.
 
 mod noise;
 mod normal;
@@ -27,15 +29,21 @@ use covimap_embed::Point;
 use serde::{Deserialize, Serialize};
 
 use crate::component::put_in_frame;
-use crate::{ChartFit, GlobalMap, MapError, PlacedLandmark, Range, SightingLog, delaunay_edges};
+use crate::progress::begin;
+use crate::{
+    ChartFit, CoVisibility, GlobalMap, LandmarkId, MapError, Observer, PlacedLandmark, Range, SightingLog,
+    Stage, delaunay_edges,
+};
 use readings::Readings;
-use reduced::{fit_noise, move_landmarks};
-use sweep::Sweep;
+use reduced::{Equations, Solved, fit_held, fit_noise};
+use sweep::{FAR, Sweep};
 
 /// Rounds of places, scale and noise on the map as it is.
 const FIRST_ROUNDS: usize = 5;
 /// Rounds of places, landmarks and noise.
-const ROUNDS: usize = 8;
+const ROUNDS: i32 = 10;
+/// By this factor more may be missed in the first of them before a range loses its say; a quarter of it in the next, and so on.
+const WIDEST: f64 = 64.0;
 /// Ranges of a step that takes part, at least: two fix its place, the third tells something.
 const FEWEST: usize = 3;
 /// Misses of more than this many standard deviations are outliers.
@@ -63,9 +71,14 @@ pub struct RangeReport {
 /// `components` lists the landmarks of each, ascending, and `charts` their points.
 pub(crate) fn fit(
     log: &SightingLog,
+    counts: &CoVisibility,
     components: &[Vec<u32>],
     charts: &mut [&mut Vec<Point>],
-) -> Vec<Option<RangeReport>> {
+    observer: &dyn Observer,
+) -> Result<Vec<Option<RangeReport>>, MapError> {
+    if log.ranges().is_empty() {
+        return Ok(vec![None; components.len()]);
+    }
     let mut place = vec![(0, 0); log.names().len()];
     for (component, members) in components.iter().enumerate() {
         members.iter().enumerate().for_each(|(k, &member)| place[member as usize] = (component, k as u32));
@@ -84,7 +97,16 @@ pub(crate) fn fit(
             left = others;
         }
     }
-    steps.into_iter().zip(charts).map(|(steps, points)| fit_component(&steps, points)).collect()
+    let taking_part = steps.iter().filter(|steps| !steps.is_empty()).count();
+    begin(Stage::Ranges, Some((taking_part * (FIRST_ROUNDS + ROUNDS as usize)) as u64), observer)?;
+    let mut reports = Vec::with_capacity(components.len());
+    for ((members, steps), points) in components.iter().zip(steps).zip(charts) {
+        let id = |landmark: u32| LandmarkId(members[landmark as usize]);
+        let seen = |a, b| counts.together(id(a), id(b)) > 0;
+        reports.push(fit_component(&steps, points, seen, observer)?);
+    }
+    observer.finished(Stage::Ranges);
+    Ok(reports)
 }
 
 /// The map with every component that has ranges in metres.
@@ -109,21 +131,38 @@ pub(crate) fn in_metres(map: GlobalMap) -> Result<GlobalMap, MapError> {
     map.with_positions(&positions, fits)
 }
 
-/// `None`, and the points as they were, if no step takes part or all landmarks of the steps are in one place.
-fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<RangeReport> {
+/// `None`, and the points as they were, if no step takes part or all landmarks of the steps are in one place. `seen` tells
+/// whether two landmarks were ever seen together.
+fn fit_component(
+    steps: &[Vec<(u32, f64)>],
+    points: &mut Vec<Point>,
+    seen: impl Fn(u32, u32) -> bool,
+    observer: &dyn Observer,
+) -> Result<Option<RangeReport>, MapError> {
+    let goes_on = || {
+        observer.advanced(1);
+        if observer.interrupted() { Err(MapError::Interrupted) } else { Ok(()) }
+    };
     let readings = Readings::new(steps, points.len());
     let edges = delaunay_edges(points).expect("positions of a map are finite (bug in covimap)");
-    let mut sweep = Sweep::start(&readings, points, &edges)?;
+    let Some(mut sweep) = Sweep::start(&readings, points, &edges, seen) else { return Ok(None) };
     for _ in 0..FIRST_ROUNDS {
         sweep.place_steps();
         sweep.fit_scale();
         fit_noise(&mut sweep);
+        goes_on()?;
     }
-    for _ in 0..ROUNDS {
+    let mut equations = Equations::new(&readings, &sweep.edges, points.len());
+    for round in 0..ROUNDS {
+        sweep.far = FAR * (WIDEST * 0.25_f64.powi(round)).max(1.0);
         sweep.place_across();
-        move_landmarks(&mut sweep);
+        sweep.weigh_edges();
+        let Solved { moves, freedom } = equations.solve(&sweep)?;
+        sweep.move_landmarks(&moves);
         sweep.place_steps();
         fit_noise(&mut sweep);
+        fit_held(&mut sweep, &freedom);
+        goes_on()?;
     }
     let misses: Vec<(f64, f64)> = (0..readings.all().len())
         .map(|place| (sweep.look(place).1, place))
@@ -141,7 +180,7 @@ fn fit_component(steps: &[Vec<(u32, f64)>], points: &mut Vec<Point>) -> Option<R
     };
     *points = sweep.points.iter().map(|point| point.map(|c| c / sweep.scale)).collect();
     put_in_frame(points, &mut []);
-    Some(report)
+    Ok(Some(report))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 /// Groups of ranges, from near to far, whose deviations are compared.
 const GROUPS: usize = 8;
 /// Standard deviation over the median of the absolute values, of a normal distribution.
-const NORMAL: f64 = 1.4826;
+pub(super) const NORMAL: f64 = 1.4826;
 /// Rounds of the fit, each with the weights of the last.
 const ROUNDS: usize = 10;
 

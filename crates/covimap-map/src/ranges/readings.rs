@@ -11,7 +11,7 @@ pub(super) struct Reading {
 /// All ranges of a component.
 #[derive(Debug, Default)]
 pub(super) struct Readings {
-    /// By step.
+    /// By step, and by landmark within a step.
     all: Vec<Reading>,
     /// Those of step t are `starts[t]..starts[t + 1]`.
     starts: Vec<usize>,
@@ -21,7 +21,7 @@ pub(super) struct Readings {
 }
 
 impl Readings {
-    /// From the landmark and the metres of every range, one list a step.
+    /// From the landmark and the metres of every range, one list a step, ascending by landmark.
     pub fn new(steps: &[Vec<(u32, f64)>], landmarks: usize) -> Self {
         let mut readings =
             Self { starts: vec![0], landmark_starts: vec![0; landmarks + 1], ..Self::default() };
@@ -41,7 +41,7 @@ impl Readings {
         readings
     }
 
-    /// By step.
+    /// By step, and by landmark within a step.
     pub fn all(&self) -> &[Reading] {
         &self.all
     }
@@ -54,6 +54,11 @@ impl Readings {
     /// Where the ranges of a step are.
     pub fn of_step(&self, step: usize) -> std::ops::Range<usize> {
         self.starts[step]..self.starts[step + 1]
+    }
+
+    /// The ranges to later landmarks in the same step.
+    pub fn after(&self, place: usize) -> &[Reading] {
+        &self.all[place + 1..self.starts[self.all[place].step as usize + 1]]
     }
 
     /// Where the ranges to a landmark are.

@@ -11,15 +11,19 @@ use super::readings::{Reading, Readings};
 const STEPS: usize = 3;
 /// Share of the curvature added to both axes: landmarks on a line leave a place free across it.
 const RIDGE: f64 = 0.01;
-/// What the sightings say of the length between neighbours on the map is within this share of it.
+/// Share of the length between neighbours by which the map is taken to be off at first.
 const HELD: f64 = 0.1;
-/// Weights fall from this many standard deviations on.
-const FAR: f64 = 3.0;
+/// The same where the neighbours were never seen together, at all times.
+const HARDLY_HELD: f64 = 1.0;
+/// Weights fall from this many standard deviations on, in the end.
+pub(super) const FAR: f64 = 3.0;
 
 /// Neighbours on the map, and how far it has them apart.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Edge {
     pub ends: [u32; 2],
+    /// Whether they were ever seen together.
+    pub seen: bool,
     pub length: f64,
     pub weight: f64,
 }
@@ -33,6 +37,10 @@ pub(super) struct Sweep<'a> {
     /// Of the ranges.
     pub weights: Vec<f64>,
     pub noise: Noise,
+    /// Share of its length by which an edge whose ends were seen together is off.
+    pub held: f64,
+    /// Weights fall from this many standard deviations on, [`FAR`] or more.
+    pub far: f64,
     /// Metres a map unit.
     pub scale: f64,
     /// Of all ranges.
@@ -41,8 +49,13 @@ pub(super) struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     /// Places in the middle of what their steps show, and the scale that the median range then has. `None` without a
-    /// length.
-    pub fn start(readings: &'a Readings, points: &[Point], edges: &[(u32, u32)]) -> Option<Self> {
+    /// length. `edges` are neighbours on the map; those that were never `seen` together only hold landmarks without ranges.
+    pub fn start(
+        readings: &'a Readings,
+        points: &[Point],
+        edges: &[(u32, u32)],
+        seen: impl Fn(u32, u32) -> bool,
+    ) -> Option<Self> {
         let middle = |step: usize| {
             let own = &readings.all()[readings.of_step(step)];
             let sum = own.iter().fold([0.0; 2], |sum, reading| add(sum, points[reading.landmark as usize]));
@@ -55,9 +68,12 @@ impl<'a> Sweep<'a> {
             .iter()
             .map(|reading| length(sub(points[reading.landmark as usize], places[reading.step as usize])));
         let (range, away) = (median(&mut ranges)?, median(&mut away.collect::<Vec<_>>())?);
+        let ranged = |landmark: u32| readings.of_landmark(landmark as usize).next().is_some();
         let edge = |&(a, b): &(u32, u32)| {
             let length = length(sub(points[b as usize], points[a as usize]));
-            (length > 0.0).then(|| Edge { ends: [a, b], length, weight: (HELD * length).powi(-2) })
+            // How far apart landmarks are that a wall separates the map knows least of all.
+            let held = seen(a, b) || !ranged(a) || !ranged(b);
+            (length > 0.0 && held).then(|| Edge { ends: [a, b], seen: seen(a, b), length, weight: 1.0 })
         };
         (away > 0.0).then(|| {
             let mut sweep = Self {
@@ -67,6 +83,8 @@ impl<'a> Sweep<'a> {
                 edges: edges.iter().filter_map(edge).collect(),
                 weights: vec![1.0; readings.all().len()],
                 noise: Noise { fixed: range * range, growing: 0.0 },
+                held: HELD,
+                far: FAR,
                 scale: 1.0,
                 median: range,
             };
@@ -96,10 +114,17 @@ impl<'a> Sweep<'a> {
         (way.map(|c| c / away), wanted - away)
     }
 
-    /// `1 / v (c^2 / (c^2 + e^2 / v))^2` for a miss `e` of the variance `v`.
     fn weight(&self, place: usize, miss: f64) -> f64 {
-        let variance = self.variance(place, miss);
-        (FAR * FAR / (FAR * FAR + miss * miss / variance)).powi(2) / variance
+        weight(miss, self.variance(place, miss), self.far)
+    }
+
+    /// Weighs the edges by what they miss now.
+    pub fn weigh_edges(&mut self) {
+        for k in 0..self.edges.len() {
+            let (miss, Edge { seen, length, .. }) = (self.strain(k).1, self.edges[k]);
+            let share = if seen { self.held } else { HARDLY_HELD };
+            self.edges[k].weight = weight(miss, (share * length).powi(2), self.far);
+        }
     }
 
     /// Of a range that misses by so much: by the length that the map has for it. Those of near landmarks count as
@@ -167,9 +192,15 @@ impl<'a> Sweep<'a> {
         let cost = |place: usize| {
             let miss = self.look_from(from, place).1;
             let square = miss * miss / self.variance(place, miss);
-            FAR * FAR * square / (FAR * FAR + square)
+            let far = self.far * self.far;
+            far * square / (far + square)
         };
         self.readings.of_step(step).map(cost).sum()
+    }
+
+    /// Moves every landmark.
+    pub fn move_landmarks(&mut self, moves: &[Point]) {
+        self.points.iter_mut().zip(moves).for_each(|(point, &by)| *point = add(*point, by));
     }
 
     /// Eq. (1).
@@ -190,7 +221,6 @@ impl<'a> Sweep<'a> {
         self.points.iter_mut().chain(&mut self.places).flatten().for_each(|c| *c *= factor);
         for edge in &mut self.edges {
             edge.length *= factor;
-            edge.weight /= factor * factor;
         }
     }
 
@@ -201,4 +231,9 @@ impl<'a> Sweep<'a> {
         };
         self.scale / self.readings.all().iter().enumerate().map(away).sum::<f64>().sqrt()
     }
+}
+
+/// `1 / v (c^2 / (c^2 + e^2 / v))^2` for a miss `e` of the variance `v`, `c` being `far`.
+fn weight(miss: f64, variance: f64, far: f64) -> f64 {
+    (far * far / (far * far + miss * miss / variance)).powi(2) / variance
 }
