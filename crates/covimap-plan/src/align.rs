@@ -96,8 +96,16 @@ pub fn align(index: &MapIndex, known: &Known) -> Result<Aligned, PlanError> {
         }
         if let Some(place) = alignment.iter().position(|before| before.component == component) {
             let before = alignment.remove(place);
-            fit.scale *= before.scale;
-            fit.handed |= before.handed;
+            if before.handed && fit.anchors == 0 && known_from_map.mirrored {
+                return Err(contradicted(index, &evidence.turns[0].0));
+            }
+            if fit.anchors + fit.distances == 0 {
+                // A turn has nothing to say of lengths: they are as exact as they were.
+                fit = ChartFit { handed: true, ..before };
+            } else {
+                fit.scale *= before.scale;
+                fit.handed |= before.handed;
+            }
         }
         alignment.push(fit);
         carried.push(component);

@@ -71,7 +71,8 @@ impl Covariance {
     pub fn axes(&self) -> (f64, f64, f64) {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let radius = half.hypot(self.xy);
-        ((mean + radius).sqrt(), (mean - radius).max(0.0).sqrt(), 0.5 * self.xy.atan2(half))
+        // A negative zero would turn the axis by half a turn.
+        ((mean + radius).sqrt(), (mean - radius).max(0.0).sqrt(), 0.5 * (self.xy + 0.0).atan2(half))
     }
 }
 

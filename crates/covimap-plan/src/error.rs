@@ -93,6 +93,17 @@ pub enum PlanError {
         /// Where it ends.
         to: String,
     },
+    /// A search of one's own came back with something else than a way from the one landmark to the other.
+    #[error(
+        "the search for a way from {from:?} to {to:?} found none that begins at the one, ends at the other and stays on \
+         the map; see `RouteSearch`"
+    )]
+    Astray {
+        /// Where the way was to begin.
+        from: String,
+        /// Where it was to end.
+        to: String,
+    },
     /// Nothing given to align a map with.
     #[error("nothing to align the map with; give known positions, known distances or a known turn")]
     NothingKnown,

@@ -176,7 +176,7 @@ impl MapIndex {
     /// Those of [`MapIndex::id`].
     pub fn neighbours(&self, landmark: impl LandmarkRef) -> Result<&[LandmarkId], PlanError> {
         let id = self.id(landmark)?;
-        Ok(self.neighbours.get_or_init(|| Neighbours::new(&self.map, &self.charts)).of(id))
+        Ok(made(&self.neighbours, || Neighbours::new(&self.map, &self.charts)).of(id))
     }
 
     pub(crate) fn placed(&self, id: LandmarkId) -> &PlacedLandmark {
@@ -193,8 +193,8 @@ impl MapIndex {
         self.confidence().growth(chart, apart)
     }
 
-    fn confidence(&self) -> &Confidence {
-        self.confidence.get_or_init(|| Confidence::new(&self.map, &self.charts))
+    pub(crate) fn confidence(&self) -> &Confidence {
+        made(&self.confidence, || Confidence::new(&self.map, &self.charts))
     }
 
     /// Whether two landmarks are in one frame.
@@ -231,6 +231,18 @@ pub(crate) fn each<Q: Sync, A: Send>(
 
 fn check_place(position: Point) -> Result<(), PlanError> {
     if position.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(PlanError::Nowhere { position }) }
+}
+
+/// What a cell holds, which is made at first.
+///
+/// It is made outside of the lock of the cell: making it shares work among threads, and one that waits for the others may take up another
+/// task that asks for the same cell. Under the lock it would then wait for itself.
+fn made<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    if let Some(made) = cell.get() {
+        return made;
+    }
+    let made = make();
+    cell.get_or_init(|| made)
 }
 
 #[cfg(test)]

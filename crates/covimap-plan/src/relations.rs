@@ -19,12 +19,17 @@
 //! handedness is known from outside ([`MapIndex::is_handed`]). Order around a place is then told in the
 //! other sense of rotation; the probability is about the map as it stands.
 
+use std::f64::consts::TAU;
+
 use covimap_embed::Point;
 use covimap_map::LandmarkId;
 use serde::Serialize;
 
 use crate::index::each;
 use crate::{LandmarkRef, MapIndex, PlanError};
+
+/// Directions that differ by less are the same, in radians.
+const SAME_DIRECTION: f64 = 1e-12;
 
 /// The way a triple turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -73,6 +78,8 @@ impl MapIndex {
     where
         L: LandmarkRef + Sync,
     {
+        // Once, before all threads ask for it.
+        self.confidence();
         each(triples, |[a, b, c]| self.orientation(a, b, c))
     }
 
@@ -90,6 +97,7 @@ impl MapIndex {
         L: LandmarkRef + Sync,
     {
         let [a, b] = [self.id(a)?, self.id(b)?];
+        self.confidence();
         each(others, |other| self.orientation(a, b, other))
     }
 
@@ -149,12 +157,17 @@ impl MapIndex {
             }
             let direction = dy.atan2(dx);
             let from_first = direction - *first.get_or_insert(direction);
-            let turned = if from_first < 0.0 { from_first + std::f64::consts::TAU } else { from_first };
+            // What is in one direction but for rounding turns by nothing, not by nearly a whole turn.
+            let turned = if from_first.abs() < SAME_DIRECTION { 0.0 } else { from_first.rem_euclid(TAU) };
+            let turned = if TAU - turned < SAME_DIRECTION { 0.0 } else { turned };
             seen.push((turned, dx.hypot(dy), id));
         }
-        // The sort is stable, so that of several in one direction and distance the order stays.
+        // The sorts are stable, so that of several in one direction and distance the order stays.
         if let Some((_, others)) = seen.split_first_mut() {
-            others.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            others.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for same in others.chunk_by_mut(|a, b| b.0 - a.0 < SAME_DIRECTION) {
+                same.sort_by(|a, b| a.1.total_cmp(&b.1));
+            }
         }
         Ok(seen.into_iter().map(|(_, _, id)| id).collect())
     }

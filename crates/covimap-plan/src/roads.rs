@@ -163,7 +163,8 @@ impl<'a> Roads<'a> {
     /// The way that a search of your own finds.
     ///
     /// # Errors
-    /// Those of [`Roads::route`]; [`PlanError::NoSuchRoad`] when the search comes back with a leg that is no road.
+    /// Those of [`Roads::route`]; [`PlanError::Astray`] when the search comes back with other ends,
+    /// [`PlanError::NoSuchRoad`] when it does with a leg that is no road.
     pub fn route_by(
         &self,
         search: &impl RouteSearch<Self>,
@@ -173,7 +174,14 @@ impl<'a> Roads<'a> {
         let [from, to] = [self.index.id(from)?, self.index.id(to)?];
         self.index.check_together(from, to)?;
         match search.search(self, from, to) {
-            Some(landmarks) => self.along(landmarks),
+            Some(way) => {
+                let whole = way.first() == Some(&from) && way.last() == Some(&to);
+                if whole && way.iter().all(|id| id.index() < self.index.map().len()) {
+                    return self.along(way);
+                }
+                let [from, to] = [from, to].map(|id| self.index.name(id).to_owned());
+                Err(PlanError::Astray { from, to })
+            }
             None => {
                 let [from, to] = [from, to].map(|id| self.index.name(id).to_owned());
                 Err(PlanError::NoRoute { from, to, min_steps: self.params.min_steps })

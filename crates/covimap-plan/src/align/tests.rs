@@ -139,6 +139,19 @@ fn what_is_known_later_adds_to_what_was_known() {
 }
 
 #[test]
+fn a_turn_leaves_a_survey_as_it_is_or_contradicts_it() {
+    let truth = survey(&[("L0", [10.0, 20.0]), ("L1", [12.0, 20.0]), ("L3", [10.0, 22.0])]);
+    let surveyed = with_positions(&square_and_pair(), &truth, &[]).unwrap();
+    let before = surveyed.map.alignment()[0].clone();
+    let index = MapIndex::new(std::sync::Arc::new(surveyed.map));
+    let confirmed = with_turns(&index, &[ids(["L0", "L1", "L2"])]).unwrap();
+    assert_eq!(confirmed.map.alignment(), [before]);
+    assert_eq!(confirmed.map.landmarks(), index.map().landmarks());
+    let refused = with_turns(&index, &[ids(["L2", "L1", "L0"])]);
+    assert!(matches!(refused, Err(PlanError::TurnContradicted { .. })), "{refused:?}");
+}
+
+#[test]
 fn contradictions_and_what_tells_nothing_are_refused() {
     let index = square_and_pair();
     assert_eq!(

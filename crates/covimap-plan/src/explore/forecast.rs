@@ -59,14 +59,12 @@ pub fn forecast(index: &MapIndex, params: ExploreParams) -> Result<Forecast, Pla
 
 /// The mean of `1 - P` over the triangles of every landmark with two of those nearest to it.
 fn near_error(index: &MapIndex) -> Result<f64, PlanError> {
+    // Once, before all threads ask for it.
+    index.confidence();
     let of_one = |id: u32| {
         let id = LandmarkId(id);
-        let near: Vec<LandmarkId> = index
-            .nearest(id, NEAREST)?
-            .into_iter()
-            .map(|near| near.landmark)
-            .filter(|&near| near != id)
-            .collect();
+        let near: Vec<LandmarkId> =
+            index.nearest(id, NEAREST)?.into_iter().map(|near| near.landmark).collect();
         let (mut sum, mut count) = (0.0, 0);
         for (k, &a) in near.iter().enumerate() {
             for &b in &near[..k] {

@@ -129,6 +129,30 @@ fn threads_share_an_index() {
 }
 
 #[test]
+fn many_threads_may_be_the_first_to_ask() {
+    // Few questions for many threads: those without one help with what the questions need first.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(8).build().unwrap();
+    let map = index_of(&scattered(20_000, 3), &[]).map().clone();
+    let triples: Vec<[LandmarkId; 3]> =
+        (0..12).map(|k| [3 * k, 3 * k + 1, 3 * k + 2].map(LandmarkId)).collect();
+    let alone = MapIndex::new(map.clone());
+    let one_by_one: Vec<_> = triples.iter().map(|&[a, b, c]| alone.orientation(a, b, c).unwrap()).collect();
+    for _ in 0..20 {
+        let asked = |index: &MapIndex| {
+            triples.par_iter().map(|&[a, b, c]| index.orientation(a, b, c).unwrap()).collect::<Vec<_>>()
+        };
+        let fresh = MapIndex::new(map.clone());
+        assert_eq!(pool.install(|| asked(&fresh)), one_by_one);
+        let fresh = MapIndex::new(map.clone());
+        assert_eq!(pool.install(|| fresh.orientation_of_each(&triples).unwrap()), one_by_one);
+        let fresh = MapIndex::new(map.clone());
+        let near = pool
+            .install(|| triples.par_iter().map(|ids| fresh.neighbours(ids[0]).unwrap().len()).sum::<usize>());
+        assert!(near > 24);
+    }
+}
+
+#[test]
 fn delaunay_neighbours_are_those_of_each_component() {
     let points = scattered(80, 9);
     let placed: Vec<_> = points.iter().enumerate().map(|(i, &point)| (point, i as u32 % 2)).collect();

@@ -18,9 +18,9 @@
 //! the map, and sees any landmarks at random, or new ones.
 //!
 //! # Algorithm
-//! 1. Landmarks seen within two ranges of each other make a crowd; around the middle of every crowd (1) is
-//!    taken on a coarse grid, for every quality.
-//! 2. Cells that matter are cut into finer ones, and (1) is taken again with the best quality.
+//! 1. Landmarks seen within two ranges of one among them make a crowd; around the middle of every crowd of half the size of the
+//!    largest or more, (1) is taken on a coarse grid, and summed over the qualities by their priors.
+//! 2. Cells that matter are cut into finer ones, and (1) is taken again.
 //! 3. The cells that hold 99.9 % of the posterior fall into connected pieces: the modes.
 //!
 //! # Complexity
@@ -55,6 +55,9 @@ const CROWD: f64 = 0.5;
 /// Most landmarks that crowds are looked for among; of more, some evenly spread.
 const CROWDED: usize = 256;
 
+/// Most hashes that the names of the copies of an ID are looked for with.
+const MOST_HASHES: usize = 4;
+
 /// What one look shows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Look {
@@ -87,7 +90,7 @@ pub struct Location {
     /// The modes of the posterior, the most likely first. Their probabilities sum to 1 unless there is none:
     /// then no known landmark was seen.
     pub modes: Vec<Mode>,
-    /// Probability of being at no place of the map.
+    /// Probability of being at no place of the map; 1 without a mode.
     pub lost: f64,
     /// How many of the known landmarks seen can be seen from the best mode.
     pub fits: usize,
@@ -149,16 +152,18 @@ impl Localiser {
         &self.index
     }
 
-    /// Reads a look. An ID that is repeated counts once. Where the map has `A#1`, `A#2` and so on instead of `A`,
-    /// the look shows one of them.
+    /// Reads a look. An ID that is repeated counts once. Where the build split an ID, so that the map has `A#1`, `A#2` and so on
+    /// instead of `A`, the look shows one of them.
     pub fn look<'a>(&self, ids: impl IntoIterator<Item = &'a str>) -> Look {
         let mut look = Look::default();
         for id in ids {
             match self.index.lookup(id) {
                 Some(landmark) => look.known.push(landmark),
-                None if self.copies(id).len() > 1 => look.copies.push(self.copies(id)),
-                None if look.unknown.iter().any(|other| other == id) => (),
-                None => look.unknown.push(id.to_owned()),
+                None => match self.copies(id) {
+                    copies if copies.len() > 1 => look.copies.push(copies),
+                    _ if look.unknown.iter().any(|other| other == id) => (),
+                    _ => look.unknown.push(id.to_owned()),
+                },
             }
         }
         look.known.sort_unstable();
@@ -170,18 +175,27 @@ impl Localiser {
 
     /// The landmarks that the map made of an ID which several bear.
     fn copies(&self, id: &str) -> Vec<LandmarkId> {
-        (1..).map_while(|number| self.index.lookup(&format!("{id}#{number}"))).collect()
+        if !self.index.map().params().auto.split_aliases {
+            return Vec::new();
+        }
+        let with = |mark: &str| -> Vec<LandmarkId> {
+            (1..).map_while(|number| self.index.lookup(&format!("{id}{mark}{number}"))).collect()
+        };
+        // Where the log has IDs of its own with one hash, copies have two.
+        let marked = (1..=MOST_HASHES).map(|hashes| with(&"#".repeat(hashes)));
+        marked.filter(|found| !found.is_empty()).last().unwrap_or_default()
     }
 
     /// Where a robot may be that sees this.
     #[must_use]
     pub fn locate(&self, look: &Look) -> Location {
-        let mut patches: Vec<Patch> = Vec::new();
-        for (component, middle) in self.crowds(&look.candidates()) {
-            let sight = self.sight(look, component, middle);
-            let patch = Patch::around(&sight, component, middle, &patches);
-            patches.push(patch);
-        }
+        let mut crowds = self.crowds(&look.candidates());
+        crowds.sort_by_key(|crowd| crowd.0);
+        let patch = |crowds: &[(u32, Point)]| {
+            let sight = |&(component, middle)| (self.sight(look, component, middle), middle);
+            Patch::around(crowds[0].0, &crowds.iter().map(sight).collect::<Vec<_>>())
+        };
+        let patches: Vec<Patch> = crowds.chunk_by(|a, b| a.0 == b.0).map(patch).collect();
         let best = patches.iter().map(Patch::log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let evidence: f64 = patches.iter().map(|patch| (patch.log_evidence() - best).exp()).sum();
         self.location(look, modes::modes(&patches), best + evidence.ln() - self.area.ln())
@@ -230,7 +244,8 @@ impl Localiser {
         let any = ((known + unknown).max(1.0) / self.index.map().len().max(1) as f64).min(1.0);
         let lost = LOST.ln() + known * ((1.0 - UNKNOWN[0]) * any).ln() + unknown * UNKNOWN[0].ln();
         let found = (1.0 - LOST).ln() + on_map + known * (1.0 - UNKNOWN[1]).ln() + unknown * UNKNOWN[1].ln();
-        1.0 / (1.0 + (found - lost).exp())
+        // No evidence of any place: nothing known was seen, or the map has no landmark.
+        if found.is_finite() { 1.0 / (1.0 + (found - lost).exp()) } else { 1.0 }
     }
 
     /// Component and middle of every crowd among the landmarks seen, the largest crowd first.

@@ -6,8 +6,6 @@ use super::sight::{PLACES, Sight};
 
 /// Side of a coarse cell, as a share of the range.
 pub(super) const COARSE: f64 = 0.2;
-/// Cells on every axis of the patch, to either side of the middle one.
-const HALF: i32 = 6;
 /// Qualities of a look and their priors.
 pub(super) const QUALITIES: [(f64, f64); 4] = [(1.0, 0.94), (0.5, 0.03), (0.25, 0.02), (0.1, 0.01)];
 /// Logarithm below the best that a coarse cell may be and still be cut.
@@ -15,7 +13,7 @@ const WORTH_CUTTING: f64 = 10.0;
 /// Fine cells that are taken at most, about.
 const FINE_CELLS: usize = 1000;
 /// Most pieces on a side into which a coarse cell is cut.
-const MOST_PIECES: i32 = 4;
+const MOST_PIECES: i64 = 4;
 /// Share of the posterior that may be left out.
 const LEFT_OUT: f64 = 1e-3;
 
@@ -24,9 +22,9 @@ const LEFT_OUT: f64 = 1e-3;
 pub struct Mode {
     /// Probability of this mode among all.
     pub probability: f64,
-    /// Mean of the place, map units, in the chart of the component.
+    /// Mean of the place, units of the map, in the chart of the component.
     pub position: Point,
-    /// Covariance of the place, `xx`, `xy`, `yy`, in squares of map units.
+    /// Covariance of the place, `xx`, `xy`, `yy`, in squares of units of the map.
     pub covariance: [f64; 3],
     /// Component in whose chart it lies.
     pub component: u32,
@@ -44,15 +42,30 @@ impl Mode {
 
 /// A fine cell: column, row, and the logarithm of likelihood times area in squares of the range.
 pub(super) struct Cell {
-    pub at: [i32; 2],
+    pub at: [i64; 2],
     pub log: f64,
 }
 
-/// The posterior around the middle of one crowd.
+/// The cells of a grid over a chart, `side` wide, whose middles lie within [`PLACES`] ranges of a place.
+pub(super) fn cells_around(middle: Point, side: f64) -> impl Iterator<Item = [i64; 2]> {
+    let half = (PLACES / COARSE).ceil() as i64;
+    let centre = middle.map(|c| (c / side).round() as i64);
+    let all = (-half..=half).flat_map(move |x| (-half..=half).map(move |y| [centre[0] + x, centre[1] + y]));
+    all.filter(move |at| super::distance(at.map(|c| c as f64 * side), middle) <= PLACES / COARSE * side)
+}
+
+/// Logarithm of the likelihood of a look of unknown quality, by those of looks of each of [`QUALITIES`].
+pub(super) fn of_any_quality(logs: [f64; QUALITIES.len()]) -> f64 {
+    let mut with_prior = logs;
+    with_prior.iter_mut().zip(QUALITIES).for_each(|(log, (_, prior))| *log += f64::ln(prior));
+    log_sum(&with_prior)
+}
+
+/// The posterior over places of one chart.
 pub(super) struct Patch {
     component: u32,
-    middle: Point,
-    range: f64,
+    /// Place of cell (0, 0).
+    origin: Point,
     /// Side of a fine cell.
     side: f64,
     /// By column, then row.
@@ -60,57 +73,51 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Takes the posterior; places that lie in one of the patches before belong to that one.
-    pub fn around(sight: &Sight, component: u32, middle: Point, before: &[Self]) -> Self {
-        let side = COARSE * sight.range;
-        let blur = side / 4.0;
-        let place = |at: [i32; 2], side: f64| [0, 1].map(|axis| middle[axis] + f64::from(at[axis]) * side);
-        let is_inside = |at: &[i32; 2]| {
-            f64::from(at[0]).hypot(f64::from(at[1])) * COARSE <= PLACES
-                && !before.iter().any(|other| other.component == component && other.covers(place(*at, side)))
+    /// Takes the posterior around the middles of crowds of one component. A place that is near several of them is judged by the
+    /// sight of the first.
+    pub fn around(component: u32, crowds: &[(Sight, Point)]) -> Self {
+        let range = crowds[0].0.range;
+        let side = COARSE * range;
+        let mut coarse: Vec<([i64; 2], usize)> = Vec::new();
+        for (crowd, &(_, middle)) in crowds.iter().enumerate() {
+            coarse.extend(cells_around(middle, side).map(|at| (at, crowd)));
+        }
+        coarse.sort_unstable();
+        coarse.dedup_by_key(|cell| cell.0);
+        let log = |crowd: usize, place: Point, blur: f64| {
+            let qualities = QUALITIES.map(|(quality, _)| quality);
+            of_any_quality(crowds[crowd].0.log_likelihoods(place, qualities, blur))
         };
-        let all = (-HALF..=HALF).flat_map(|x| (-HALF..=HALF).map(move |y| [x, y]));
-        let coarse: Vec<[i32; 2]> = all.filter(is_inside).collect();
-        let qualities = QUALITIES.map(|(quality, _)| quality);
-        let logs: Vec<[f64; QUALITIES.len()]> =
-            coarse.iter().map(|&at| sight.log_likelihoods(place(at, side), qualities, blur)).collect();
-        let judged: [_; QUALITIES.len()] = std::array::from_fn(|k| {
-            let (quality, prior) = QUALITIES[k];
-            let logs: Vec<f64> = logs.iter().map(|logs| logs[k]).collect();
-            (log_sum(&logs) + f64::ln(prior), quality, prior, logs)
-        });
-        let (_, quality, prior, logs) =
-            judged.into_iter().reduce(|a, b| if b.0 > a.0 { b } else { a }).expect("four (bug in covimap)");
+        let logs: Vec<f64> =
+            coarse.iter().map(|&(at, crowd)| log(crowd, at.map(|c| c as f64 * side), side / 4.0)).collect();
         let best = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let cut: Vec<[i32; 2]> = coarse
-            .iter()
-            .zip(&logs)
-            .filter(|(_, log)| **log > best - WORTH_CUTTING)
-            .map(|(at, _)| *at)
+        let cut: Vec<([i64; 2], usize)> = coarse
+            .into_iter()
+            .zip(logs)
+            .filter(|(_, log)| *log > best - WORTH_CUTTING)
+            .map(|(cell, _)| cell)
             .collect();
-        let pieces = ((FINE_CELLS as f64 / cut.len().max(1) as f64).sqrt() as i32).clamp(1, MOST_PIECES);
-        let fine = side / f64::from(pieces);
-        let log_area = 2.0 * (fine / sight.range).ln() + prior.ln();
-        // Piece (0, 0) of cell (x, y) has its middle half a cell, less half a piece, below the cell's.
-        let shift = 0.5 * (fine - side);
-        let mut cells: Vec<Cell> = Vec::with_capacity(cut.len() * (pieces * pieces) as usize);
-        for at in cut {
+        let pieces = ((FINE_CELLS as f64 / cut.len().max(1) as f64).sqrt() as i64).clamp(1, MOST_PIECES);
+        let fine = side / pieces as f64;
+        let log_area = 2.0 * (fine / range).ln();
+        // Piece (0, 0) of cell (0, 0) has its middle half a cell, less half a piece, below the cell's.
+        let origin = [0.5 * (fine - side); 2];
+        let mut patch = Self { component, origin, side: fine, cells: Vec::new() };
+        patch.cells.reserve(cut.len() * (pieces * pieces) as usize);
+        for (at, crowd) in cut {
             for [dx, dy] in (0..pieces).flat_map(|x| (0..pieces).map(move |y| [x, y])) {
                 let at = [at[0] * pieces + dx, at[1] * pieces + dy];
-                let [x, y] = place(at, fine);
-                let [log] = sight.log_likelihoods([x + shift, y + shift], [quality], 0.0);
-                let log = log + log_area;
-                cells.push(Cell { at, log });
+                let log = log(crowd, patch.place(at), 0.0) + log_area;
+                patch.cells.push(Cell { at, log });
             }
         }
-        cells.sort_unstable_by_key(|cell| cell.at);
-        let middle = [middle[0] + shift, middle[1] + shift];
-        Self { component, middle, range: sight.range, side: fine, cells }
+        patch.cells.sort_unstable_by_key(|cell| cell.at);
+        patch
     }
 
     /// A posterior that is known already, by cells of a grid over the whole chart.
-    pub fn of_cells(range: f64, component: u32, side: f64, cells: Vec<Cell>) -> Self {
-        Self { component, middle: [0.0; 2], range, side, cells }
+    pub fn of_cells(component: u32, side: f64, cells: Vec<Cell>) -> Self {
+        Self { component, origin: [0.0; 2], side, cells }
     }
 
     /// Logarithm of the integral of the likelihood over the patch, in squares of the range.
@@ -119,12 +126,8 @@ impl Patch {
         log_sum(&logs)
     }
 
-    fn place(&self, cell: &Cell) -> Point {
-        [0, 1].map(|axis| self.middle[axis] + f64::from(cell.at[axis]) * self.side)
-    }
-
-    fn covers(&self, place: Point) -> bool {
-        super::distance(self.middle, place) <= PLACES * self.range
+    fn place(&self, at: [i64; 2]) -> Point {
+        [0, 1].map(|axis| self.origin[axis] + at[axis] as f64 * self.side)
     }
 
     /// Number of the piece of every cell above the floor; cells that touch, corners included, belong together.
@@ -183,7 +186,7 @@ fn modes_of(patch: &Patch, floor: f64, best: f64) -> Vec<Mode> {
     let of = |number: usize| {
         let weighted = || {
             let cells = patch.cells.iter().zip(&piece).filter(move |(_, own)| **own == Some(number));
-            cells.map(|(cell, _)| (patch.place(cell), (cell.log - best).exp()))
+            cells.map(|(cell, _)| (patch.place(cell.at), (cell.log - best).exp()))
         };
         let mass: f64 = weighted().map(|(_, weight)| weight).sum();
         let mean = [0, 1].map(|axis| weighted().map(|(at, w)| w * at[axis]).sum::<f64>() / mass);

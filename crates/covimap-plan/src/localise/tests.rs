@@ -32,6 +32,13 @@ pub(super) fn map_of(landmarks: &[(u32, Point)], deviation: f64, occluded: &[[u3
         .unwrap()
 }
 
+/// Settings of a map whose aliases were split.
+fn split() -> MapperParams {
+    let mut params = MapperParams::default();
+    params.auto.split_aliases = true;
+    params
+}
+
 pub(super) fn localiser(map: GlobalMap) -> Localiser {
     Localiser::new(Arc::new(MapIndex::new(Arc::new(map)))).unwrap()
 }
@@ -68,9 +75,14 @@ fn brute_force(landmarks: &[(u32, Point)], known: &[LandmarkId]) -> (Point, [f64
         let factor = |(i, landmark): (usize, &(u32, Point))| {
             let chance = 0.9 * SENSOR.visibility(distance(landmark.1, place));
             let seen = known.contains(&LandmarkId(i as u32));
-            if seen { falsely + (1.0 - falsely) * chance } else { 1.0 - chance }
+            // For each quality of the look.
+            [1.0, 0.5, 0.25, 0.1].map(|quality| {
+                if seen { falsely + (1.0 - falsely) * quality * chance } else { 1.0 - quality * chance }
+            })
         };
-        landmarks.iter().enumerate().map(factor).product::<f64>()
+        let product = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|k| a[k] * b[k]);
+        let of_quality = landmarks.iter().enumerate().map(factor).fold([0.94, 0.03, 0.02, 0.01], product);
+        of_quality.iter().sum::<f64>()
     };
     let cells: Vec<(Point, f64)> = (-50..250)
         .flat_map(|x| (-50..250).map(move |y| [f64::from(x) * 0.02, f64::from(y) * 0.02]))
@@ -261,7 +273,7 @@ fn an_id_that_two_landmarks_bear_is_the_one_with_company() {
     let map = GlobalMap::from_parts(
         ids.iter().map(String::as_str).collect(),
         plain.landmarks().to_vec(),
-        MapperParams::default(),
+        split(),
         plain.report().clone(),
     );
     let aliased = localiser(map.unwrap().with_sensing(plain.sensing().unwrap().clone()).unwrap());
@@ -278,6 +290,57 @@ fn an_id_that_two_landmarks_bear_is_the_one_with_company() {
     let wanted = localiser(plain).locate(&Look { known, ..Look::default() });
     assert!(distance(location.best().unwrap().position, wanted.best().unwrap().position) < 1e-9);
     assert!(location.misfits.is_empty() && !location.is_lost());
+}
+
+#[test]
+fn copies_are_looked_for_where_ids_were_split_only() {
+    // The log had an A#1 of its own, so that the copies of A have two hashes.
+    let plain = map_of(&hall(5, 0), 0.01, &[]);
+    let names = ["A##1", "A##2", "A#1", "B#1", "B#2"];
+    let with = |params| {
+        let map = GlobalMap::from_parts(
+            names.into_iter().collect(),
+            plain.landmarks().to_vec(),
+            params,
+            plain.report().clone(),
+        );
+        localiser(map.unwrap().with_sensing(plain.sensing().unwrap().clone()).unwrap())
+    };
+    let read = with(split()).look(["A", "A#1"]);
+    assert_eq!(read.copies, [[LandmarkId(0), LandmarkId(1)]]);
+    assert_eq!(read.known, [LandmarkId(2)]);
+    let read = with(MapperParams::default()).look(["A", "B", "A#1"]);
+    assert_eq!((read.unknown, read.copies.len(), read.known.len()), (vec!["A".into(), "B".into()], 0, 1));
+}
+
+#[test]
+fn one_place_between_two_crowds_is_one_mode() {
+    // Two landmarks that are just more than two ranges apart are two crowds; the robot sees both from the middle.
+    for gap in [1.99, 2.01] {
+        let mut landmarks = vec![(0, [0.0, 0.0]), (0, [gap * SENSOR.range, 0.0])];
+        landmarks.extend((0..40).map(|k| (0, [20.0 + f64::from(k), 0.0])));
+        let location = localiser(map_of(&landmarks, 0.01, &[])).locate(&look(&[0, 1]));
+        let best = location.best().unwrap();
+        assert!(!location.is_ambiguous(), "{location:?}");
+        let middle = 0.5 * gap * SENSOR.range;
+        assert!(distance(best.position, [middle, 0.0]) < 0.02 * SENSOR.range, "{gap}: {best:?}");
+    }
+}
+
+#[test]
+fn a_map_and_its_mirror_image_give_mirrored_places() {
+    let landmarks = hall(300, 0);
+    let mirrored: Vec<(u32, Point)> = landmarks.iter().map(|&(c, at)| (c, at.map(|x| -x))).collect();
+    let [one, other] = [landmarks, mirrored].map(|landmarks| localiser(map_of(&landmarks, 0.01, &[])));
+    // Two crowds whose discs overlap.
+    for seen in [[3_u32, 7], [20, 150], [11, 12]] {
+        let [a, b] = [&one, &other].map(|localiser| localiser.locate(&look(&seen)));
+        assert_eq!(a.modes.len(), b.modes.len());
+        for (a, b) in a.modes.iter().zip(&b.modes) {
+            assert!((a.probability - b.probability).abs() < 1e-3, "{a:?} {b:?}");
+            assert!(distance(a.position, b.position.map(|x| -x)) < 1e-2, "{a:?} {b:?}");
+        }
+    }
 }
 
 #[test]

@@ -11,14 +11,14 @@
 //! two places is therefore no trouble as long as the ways there differ.
 //!
 //! # Complexity
-//! `O(c (k + m))` a look, `c` cells of the belief, `k` landmarks near and `m` cells that a step spans.
+//! `O(c (k + m))` a look, `c` cells of the belief, `k` landmarks near and `m` cells that a step spans. After many looks that
+//! show nothing, `c` grows to the cells within two ranges of any landmark, 25 for every square range.
 
 use std::sync::Arc;
 
 use covimap_embed::Point;
 
-use super::modes::{COARSE, Cell, Patch, QUALITIES, modes};
-use super::sight::PLACES;
+use super::modes::{COARSE, Cell, Patch, QUALITIES, cells_around, modes, of_any_quality};
 use super::{Localiser, Location, Look, distance};
 use crate::PlanError;
 
@@ -26,7 +26,9 @@ use crate::PlanError;
 const NEGLIGIBLE: f64 = 1e-7;
 /// Width of the tiles in which looks are judged, in cells: a tile and its corners lie within [`PLACES`]
 /// ranges of its middle.
-const TILE: i32 = 6;
+const TILE: i64 = 6;
+/// Places further than this from every landmark, in ranges, are off the map.
+const ON_MAP: f64 = 2.0;
 /// Steps longer than this many standard deviations are left to the jumps.
 const FARTHEST: f64 = 3.0;
 
@@ -51,7 +53,7 @@ impl Default for TrackParams {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Belief {
     component: u32,
-    at: [i32; 2],
+    at: [i64; 2],
     mass: f64,
 }
 
@@ -121,17 +123,29 @@ impl Tracker {
                 let cell = *cell;
                 (-reach..=reach).map(move |k| {
                     let mut moved = cell;
-                    moved.at[axis] += k;
+                    moved.at[axis] += i64::from(k);
                     moved.mass *= weight(k) / total;
                     moved
                 })
             };
             belief = merged(belief.iter().flat_map(step).collect());
         }
+        // The prior is over the charts: a robot does not leave the map.
+        belief.retain(|cell| self.is_on_map(cell));
+        let kept: f64 = belief.iter().map(|cell| cell.mass).sum();
         for cell in &mut belief {
-            cell.mass *= 1.0 - self.params.jump;
+            cell.mass *= (1.0 - self.params.jump) / kept;
         }
         belief
+    }
+
+    /// Whether a landmark is in reach of a cell.
+    fn is_on_map(&self, cell: &Belief) -> bool {
+        let side = self.side(cell.component);
+        let (place, reach) = (cell.at.map(|c| c as f64 * side), ON_MAP / COARSE * side);
+        let placed = self.localiser.index.map().landmarks();
+        let near = self.localiser.surroundings.around(cell.component, place, reach);
+        near.into_iter().any(|id| distance(placed[id.index()].position, place) <= reach)
     }
 
     /// Adds the places that the look speaks for, wherever they are, with the probability of a jump there.
@@ -140,15 +154,8 @@ impl Tracker {
         let mass = jump * COARSE * COARSE / self.localiser.area;
         let mut landed: Vec<Belief> = Vec::new();
         for (component, middle) in self.localiser.crowds(&look.candidates()) {
-            let side = self.side(component);
-            let half = (PLACES / COARSE).ceil() as i32;
-            let centre = middle.map(|c| (c / side).round() as i32);
-            for [dx, dy] in (-half..=half).flat_map(|x| (-half..=half).map(move |y| [x, y])) {
-                let at = [centre[0] + dx, centre[1] + dy];
-                if distance(at.map(|c| f64::from(c) * side), middle) <= PLACES * side / COARSE {
-                    landed.push(Belief { component, at, mass });
-                }
-            }
+            let cells = cells_around(middle, self.side(component));
+            landed.extend(cells.map(|at| Belief { component, at, mass }));
         }
         // Discs may overlap: a place is landed on once.
         landed.sort_unstable_by_key(|cell| (cell.component, cell.at));
@@ -157,30 +164,25 @@ impl Tracker {
         *belief = merged(std::mem::take(belief));
     }
 
-    /// `ln (L(y) b(y))` of every cell, for looks of the quality that explains this one best.
+    /// `ln (L(y) b(y))` of every cell.
     fn judge(&self, belief: &[Belief], look: &Look) -> Vec<f64> {
         let tile = |cell: &Belief| (cell.component, cell.at.map(|c| c.div_euclid(TILE)));
         let mut order: Vec<usize> = (0..belief.len()).collect();
         order.sort_by_key(|&k| tile(&belief[k]));
-        let mut logs = QUALITIES.map(|_| vec![f64::NEG_INFINITY; belief.len()]);
+        let mut logs = vec![f64::NEG_INFINITY; belief.len()];
         let qualities = QUALITIES.map(|(quality, _)| quality);
         for cells in order.chunk_by(|&a, &b| tile(&belief[a]) == tile(&belief[b])) {
-            let (component, [column, row]) = tile(&belief[cells[0]]);
+            let (component, tile) = tile(&belief[cells[0]]);
             let side = self.side(component);
-            let centre = [column, row].map(|c| (f64::from(c * TILE) + f64::from(TILE - 1) / 2.0) * side);
+            let centre = tile.map(|c| ((c * TILE) as f64 + (TILE - 1) as f64 / 2.0) * side);
             let sight = self.localiser.sight(look, component, centre);
             for &k in cells {
-                let place: Point = belief[k].at.map(|c| f64::from(c) * side);
+                let place: Point = belief[k].at.map(|c| c as f64 * side);
                 let seen_from_here = sight.log_likelihoods(place, qualities, side / 4.0);
-                for ((logs, log), (_, prior)) in logs.iter_mut().zip(seen_from_here).zip(QUALITIES) {
-                    logs[k] = log + belief[k].mass.ln() + f64::ln(prior);
-                }
+                logs[k] = of_any_quality(seen_from_here) + belief[k].mass.ln();
             }
         }
-        let best = |logs: &Vec<f64>| super::modes::log_sum(logs);
-        logs.into_iter()
-            .reduce(|a, b| if best(&b) > best(&a) { b } else { a })
-            .expect("four (bug in covimap)")
+        logs
     }
 
     /// The belief as patches, one a component.
@@ -188,12 +190,7 @@ impl Tracker {
         let patch = |cells: &[Belief]| {
             let component = cells[0].component;
             let cells = cells.iter().map(|cell| Cell { at: cell.at, log: cell.mass.ln() }).collect();
-            Patch::of_cells(
-                self.localiser.sensing().sensor(component).range,
-                component,
-                self.side(component),
-                cells,
-            )
+            Patch::of_cells(component, self.side(component), cells)
         };
         self.belief.chunk_by(|a, b| a.component == b.component).map(patch).collect()
     }

@@ -121,6 +121,21 @@ fn the_order_around_a_place_turns_left_from_the_first() {
 }
 
 #[test]
+fn rounding_does_not_turn_one_direction_into_a_whole_turn() {
+    // Landmarks on rays from a place whose differences are not exact.
+    let from = [0.1, 0.2];
+    for ray in 0..60 {
+        let (sin, cos) = (f64::from(ray) * 0.105 + 0.01).sin_cos();
+        let at = |far: f64| [from[0] + far * cos, from[1] + far * sin];
+        let aside = [from[0] - sin, from[1] + cos];
+        let index =
+            index_of(&[at(1.1), at(0.3), aside, at(0.7), [from[0] - 2.0 * sin, from[1] + 2.0 * cos]], &[]);
+        let order = index.cyclic_order_at(0, from, &["L0", "L4", "L3", "L1", "L2"]).unwrap();
+        assert_eq!(numbers(&order), [0, 1, 3, 2, 4], "ray {ray}");
+    }
+}
+
+#[test]
 fn what_has_no_direction_from_a_place_is_refused() {
     let index = square_and_pair();
     assert_eq!(

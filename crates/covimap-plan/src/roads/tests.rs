@@ -112,6 +112,25 @@ fn a_foreign_search_is_taken_at_its_word_only_over_roads() {
 }
 
 #[test]
+fn a_foreign_search_that_goes_astray_is_refused() {
+    struct To(Vec<u32>);
+    impl RouteSearch<Roads<'_>> for To {
+        fn search(&self, _: &Roads<'_>, _: LandmarkId, _: LandmarkId) -> Option<Vec<LandmarkId>> {
+            Some(self.0.iter().copied().map(LandmarkId).collect())
+        }
+    }
+    let index = shortcut();
+    let roads = Roads::new(&index, params(Objective::Shortest, 3)).unwrap();
+    for way in [vec![], vec![0], vec![0, 1], vec![1, 2], vec![0, 99, 2], vec![99]] {
+        let refused = roads.route_by(&To(way.clone()), "L0", "L2");
+        assert!(
+            matches!(&refused, Err(PlanError::Astray { from, to }) if from == "L0" && to == "L2"),
+            "{way:?}"
+        );
+    }
+}
+
+#[test]
 fn the_bound_changes_no_cost() {
     // Two landmarks at one place: a road without length.
     let mut points = scattered(120, 8);

@@ -148,6 +148,25 @@ fn a_robot_that_is_carried_away_is_found_again() {
 }
 
 #[test]
+fn looks_that_show_nothing_do_not_carry_the_robot_off_the_map() {
+    let landmarks: Vec<(u32, Point)> = (0..4).map(|k| (0, [0.3 * f64::from(k), 0.0])).collect();
+    let mut tracker = tracker(localiser(map_of(&landmarks, 0.01, &[])));
+    tracker.update(&look(&[0, 1, 2]));
+    let mut most = 0;
+    for _ in 0..300 {
+        let location = tracker.update(&Look::default());
+        most = most.max(tracker.belief.len());
+        for mode in &location.modes {
+            let near = landmarks.iter().map(|landmark| distance(landmark.1, mode.position));
+            assert!(near.fold(f64::INFINITY, f64::min) < 2.5 * SENSOR.range, "{mode:?}");
+        }
+    }
+    // Two ranges around a line of two: 4 pi + 4 * 2 square ranges of 25 cells and some.
+    assert!((100..800).contains(&most), "{most}");
+    assert!(tracker.update(&look(&[1, 2, 3])).best().is_some());
+}
+
+#[test]
 fn settings_out_of_their_range_are_refused() {
     let localiser = Arc::new(localiser(map_of(&hall(10, 0), 0.01, &[])));
     for (step, jump) in [(0.0, 0.1), (4.0, 0.1), (f64::NAN, 0.1), (0.3, 0.0), (0.3, 1.0)] {
