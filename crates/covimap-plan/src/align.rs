@@ -56,7 +56,7 @@ pub struct Aligned {
     pub unknown: usize,
 }
 
-/// Carries a map into the frame of what is known. `O(n)`.
+/// Carries a map into the frame of what is known. `O(n + k log k)` for `k` things known.
 ///
 /// # Errors
 /// - [`PlanError::NothingKnown`], [`PlanError::BadDistance`]; [`PlanError::UnknownLandmark`],
@@ -71,19 +71,22 @@ pub fn align(index: &MapIndex, known: &Known) -> Result<Aligned, PlanError> {
         return Err(PlanError::NothingKnown);
     }
     let map = index.map();
-    let (anchors, unknown) = anchors(index, known.positions);
-    let rulers = rulers(index, known.distances)?;
-    let turns = turns(index, known.left_turns)?;
+    let component_of = |id: LandmarkId| index.placed(id).component;
+    let (mut anchors, unknown) = anchors(index, known.positions);
+    anchors.sort_by_key(|anchor| component_of(anchor.0));
+    let mut rulers = rulers(index, known.distances)?;
+    rulers.sort_by_key(|ruler| component_of(ruler.0));
+    let mut turns = turns(index, known.left_turns)?;
+    turns.sort_by_key(|turn| component_of(turn.0[0]));
     let mut positions: Vec<Point> = map.landmarks().iter().map(|placed| placed.position).collect();
     let mut alignment = map.alignment().to_vec();
     let (mut carried, mut residuals) = (Vec::new(), Vec::new());
     for component in index.components() {
-        let of = |id: LandmarkId| index.placed(id).component == component;
         let evidence = Evidence {
             component,
-            anchors: anchors.iter().copied().filter(|&(id, _)| of(id)).collect(),
-            rulers: rulers.iter().copied().filter(|&(from, ..)| of(from)).collect(),
-            turns: turns.iter().copied().filter(|&(ids, _)| of(ids[0])).collect(),
+            anchors: of(&anchors, component, |anchor| component_of(anchor.0)),
+            rulers: of(&rulers, component, |ruler| component_of(ruler.0)),
+            turns: of(&turns, component, |turn| component_of(turn.0[0])),
         };
         let Some((known_from_map, mut fit)) = evidence.fit(index)? else { continue };
         for id in index.component(component)? {
@@ -119,14 +122,21 @@ pub fn align(index: &MapIndex, known: &Known) -> Result<Aligned, PlanError> {
 }
 
 /// What is known of one component.
-struct Evidence {
+struct Evidence<'a> {
     component: u32,
-    anchors: Vec<(LandmarkId, Point)>,
-    rulers: Vec<(LandmarkId, LandmarkId, f64)>,
-    turns: Vec<([LandmarkId; 3], Turn)>,
+    anchors: &'a [(LandmarkId, Point)],
+    rulers: &'a [(LandmarkId, LandmarkId, f64)],
+    turns: &'a [([LandmarkId; 3], Turn)],
 }
 
-impl Evidence {
+/// Those of one component, of evidence in the order of components.
+fn of<T>(all: &[T], component: u32, component_of: impl Fn(&T) -> u32) -> &[T] {
+    let from = all.partition_point(|one| component_of(one) < component);
+    let length = all[from..].partition_point(|one| component_of(one) == component);
+    &all[from..from + length]
+}
+
+impl Evidence<'_> {
     /// The similarity that the evidence asks for, if it asks for one.
     fn fit(&self, index: &MapIndex) -> Result<Option<(Similarity, ChartFit)>, PlanError> {
         let mirrored = self.mirrored(index)?;

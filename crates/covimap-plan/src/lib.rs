@@ -6,6 +6,7 @@
 //!   one behind an `Arc`. It answers what is near, what is next to what, left or right, in which order.
 //! - [`Roads`]: lines of sight as roads, and ways over them. [`SearchGraph`] and [`RouteSearch`] let other planners
 //!   walk over them.
+//! - [`Localiser`]: where a robot is that sees these landmarks; [`Tracker`]: the same on the move.
 //! - [`align()`]: the map in the frame and unit of known positions, distances or turns.
 //! - [`explain`]: what holds a landmark in its place, and what would help.
 //! - [`next_best`], [`forecast`], [`Explorer`]: where to go next so that the map gains most, and when to stop.
@@ -31,7 +32,6 @@
 //! assert_eq!(route.landmarks.len(), 3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! - [`Localiser`]: where a robot is that sees these landmarks; [`Tracker`]: the same on the move.
 
 mod align;
 mod charts;

@@ -105,7 +105,7 @@ pub struct Route {
 }
 
 impl<'a> Roads<'a> {
-    /// The roads of a map, in `O(n)` for `n` landmarks: 24 bytes each for the shortest, some 70 for the safest.
+    /// The roads of a map, in `O(n)` for `n` landmarks: 16 bytes each for the shortest, some 70 for the safest.
     ///
     /// # Errors
     /// [`PlanError::NoSightLines`] for a map that has landmarks but no roads.

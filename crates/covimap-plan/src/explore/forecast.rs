@@ -37,7 +37,7 @@ pub struct Forecast {
 }
 
 /// Judges the map by its own account. A map without three landmarks in a component counts as wrong in every second triangle.
-/// `O(n)` after the covariances are known.
+/// `O(n log n)` after the covariances are known.
 ///
 /// # Errors
 /// [`PlanError::BadParameter`].
