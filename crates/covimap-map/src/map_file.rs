@@ -39,6 +39,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 
+use crate::state;
 use crate::{
     BuildReport, ChartFit, GlobalMap, LandmarkId, LandmarkNames, MapError, MapperParams, PlacedLandmark,
     Sensed, Sensing, SensorModel, SightLines, output,
@@ -321,13 +322,17 @@ fn retain_known(value: &mut Value, pattern: &Value) {
     }
 }
 
-fn parse<'a, T: Deserialize<'a>>(text: &'a [u8], file: &str) -> Result<T, MapError> {
-    serde_json::from_slice(text).map_err(|error| {
+fn parse<'a, T: Deserialize<'a>>(bytes: &'a [u8], file: &str) -> Result<T, MapError> {
+    serde_json::from_slice(bytes).map_err(|error| {
         // The position stands in front of our message already.
         let text = error.to_string();
         let what = text.split(" at line ").next().unwrap_or(&text);
         let line = error.line().max(1) as u64;
-        let what = format!("not a whole map file, {what}; give a file that `covimap build` wrote");
+        let what = if state::is_state(bytes) {
+            "this is a state, not a map; give the map that was written with it (`-o`)".to_owned()
+        } else {
+            format!("not a whole map file, {what}; give a file that `covimap build` wrote")
+        };
         MapError::BadLine { file: file.to_owned(), line, what }
     })
 }

@@ -28,7 +28,7 @@ impl Args {
         if self.question.json {
             return Ok(console::print(object(&index, &look, &location))?);
         }
-        console::print(text(&location))?;
+        console::print(text(&look, &location))?;
         if !look.unknown.is_empty() {
             let ids = look.unknown.join(", ");
             console.say(format_args!("{} not in the map: {ids}", counted(look.unknown.len() as u64, "ID")));
@@ -70,8 +70,11 @@ fn mode(mode: &Mode) -> Value {
     })
 }
 
-fn text(location: &Location) -> String {
+fn text(look: &Look, location: &Location) -> String {
     let state = match (location.is_lost(), location.is_ambiguous()) {
+        (true, _) if look.known.is_empty() && look.copies.is_empty() => {
+            "lost: the map has none of these landmarks"
+        }
         (true, _) => "lost: these landmarks do not go together on this map",
         (false, true) => "ambiguous: several places fit",
         (false, false) => "found",

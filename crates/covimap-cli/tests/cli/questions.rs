@@ -204,7 +204,7 @@ fn locate_says_when_nothing_is_known() {
     assert_eq!((&found["lost"], &found["ambiguous"]), (&true.into(), &false.into()));
     assert!(found["x"].is_null() && found["component"].is_null());
     let text = scratch.succeeds(&["locate", "map.json", "--seen", "nobody", "-q"]).stdout;
-    assert!(text.starts_with("lost"), "{text}");
+    assert!(text.starts_with("lost: the map has none of these landmarks"), "{text}");
     scratch.refuses(&["locate", "map.json"], USAGE, "--seen");
     scratch.refuses(&["locate", "none.json", "--seen", "A"], BAD_INPUT, "none.json");
     scratch.file("pair.jsonl", "{\"seen\": [\"P\", \"Q\"]}\n".repeat(3));

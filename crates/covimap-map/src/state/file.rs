@@ -31,6 +31,11 @@ const MAGIC: &[u8] = b"covistat";
 /// Format number that this build writes and reads.
 const FORMAT: u32 = 1;
 
+/// Whether bytes begin as those of a state.
+pub(crate) fn is_state(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
 impl MapState {
     /// Writes the state to a file, whole or not at all.
     ///

@@ -6,6 +6,8 @@
 
 mod file;
 
+pub(crate) use file::is_state;
+
 use covimap_embed::Point;
 use serde::{Deserialize, Serialize};
 

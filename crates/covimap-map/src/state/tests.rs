@@ -112,3 +112,9 @@ fn a_file_that_is_not_there_is_told() {
     assert!(matches!(error, MapError::Io { .. }));
     assert!(error.to_string().ends_with("give a state, as `covimap build --state` writes it"), "{error}");
 }
+
+#[test]
+fn a_state_that_is_given_for_a_map_is_told() {
+    let error = GlobalMap::parse_json(&bytes(&state()), "robot.state").unwrap_err().to_string();
+    assert!(error.contains("this is a state, not a map"), "{error}");
+}
