@@ -182,8 +182,8 @@ impl Localiser {
             (1..).map_while(|number| self.index.lookup(&format!("{id}{mark}{number}"))).collect()
         };
         // Where the log has IDs of its own with one hash, copies have two.
-        let marked = (1..=MOST_HASHES).map(|hashes| with(&"#".repeat(hashes)));
-        marked.filter(|found| !found.is_empty()).last().unwrap_or_default()
+        let mut marked = (1..=MOST_HASHES).rev().map(|hashes| with(&"#".repeat(hashes)));
+        marked.find(|found| !found.is_empty()).unwrap_or_default()
     }
 
     /// Where a robot may be that sees this.
