@@ -96,7 +96,6 @@ fn code(error: &anyhow::Error) -> u8 {
             | MapError::InvalidMap { .. }
             | MapError::DamagedMap { .. }
             | MapError::StateFormat { .. }
-            | MapError::RangesInState { .. }
             | MapError::DamagedState { .. }
             | MapError::NoRouteGraph { .. }
             | MapError::NothingTogether { .. }

@@ -8,15 +8,6 @@ use covimap_embed::{EmbedError, Point};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// A log with ranges, which a state cannot hold.
-    #[error(
-        "the log tells {ranges} ranges, which a state does not keep; build without one, and build anew when there are \
-         more steps"
-    )]
-    RangesInState {
-        /// Number of ranges.
-        ranges: usize,
-    },
     /// A range to a landmark that its step does not show, or that is no length.
     #[error(
         "the range of step {step} to landmark {landmark} is {metres}; give metres above 0, to landmarks that the step \

@@ -5,7 +5,7 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `covistat` |
-//! | 4 | format, 1 |
+//! | 4 | format, 2 |
 //! | 8 + b | length b of the map in its binary form, and the map |
 //! | 8 + h | length h of the rules, and the rules of all components: JSON |
 //! | 8 | sightings when all was last solved at once |
@@ -14,6 +14,7 @@
 //! | 8, 8 | n, and the length t of all IDs of the log together |
 //! | 4 n, t | length of each ID, the IDs in UTF-8 |
 //! | 8, 8 + l | steps of the log; length l of the sightings, and those: for each step its size and what each landmark is beyond the one before, varints |
+//! | 8, 8 + r | number of ranges; length r of those, and for each how many steps it is beyond the one before and the landmark, varints, and the metres, a 64-bit float; not in format 1 |
 //! | 8 + c | length c of the counts: for each landmark the number of later partners, and of each what it is beyond the one before, and `n_ij`, varints |
 //! | 4 | CRC-32 of all bytes before |
 //!
@@ -25,11 +26,13 @@ use std::path::Path;
 
 use super::{Ground, MapState, Rules, Settled, members};
 use crate::bytes::{Rest, Summed, check_sum, names, write_names, write_varint};
-use crate::{CoVisibility, GlobalMap, LandmarkId, MapError, SightingLog, output};
+use crate::{CoVisibility, GlobalMap, LandmarkId, MapError, Range, SightingLog, output};
 
 const MAGIC: &[u8] = b"covistat";
-/// Format number that this build writes and reads.
-const FORMAT: u32 = 1;
+/// Format number that this build writes; it reads those before, too.
+const FORMAT: u32 = 2;
+/// The first format that has ranges.
+const WITH_RANGES: u32 = 2;
 
 /// Whether bytes begin as those of a state.
 pub(crate) fn is_state(bytes: &[u8]) -> bool {
@@ -73,6 +76,8 @@ impl MapState {
         write_names(&mut out, self.log.names())?;
         out.write_all(&(self.log.steps() as u64).to_le_bytes())?;
         write_block(&mut out, &packed_steps(&self.log))?;
+        out.write_all(&(self.log.ranges().len() as u64).to_le_bytes())?;
+        write_block(&mut out, &packed_ranges(&self.log))?;
         write_block(&mut out, &packed_pairs(&self.counts))?;
         out.finish()
     }
@@ -105,10 +110,10 @@ impl MapState {
             rest.number()
         };
         let found = begin(&mut rest).map_err(damaged)?;
-        if found != FORMAT {
+        if !(1..=FORMAT).contains(&found) {
             return Err(MapError::StateFormat { file: file.to_owned(), found, known: FORMAT });
         }
-        check_sum(bytes).and_then(|()| contents(&mut rest)).map_err(damaged)
+        check_sum(bytes).and_then(|()| contents(&mut rest, found)).map_err(damaged)
     }
 }
 
@@ -130,7 +135,19 @@ fn packed_steps(log: &SightingLog) -> Vec<u8> {
     bytes
 }
 
-fn packed_pairs(counts: &CoVisibility) -> Vec<u8> {
+fn packed_ranges(log: &SightingLog) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(12 * log.ranges().len());
+    let mut last = 0;
+    for range in log.ranges() {
+        write_varint(&mut bytes, (range.step - last) as u32);
+        write_varint(&mut bytes, range.landmark);
+        bytes.extend(range.metres.to_le_bytes());
+        last = range.step;
+    }
+    bytes
+}
+
+pub(super) fn packed_pairs(counts: &CoVisibility) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(4 * counts.pair_count());
     for landmark in 0..counts.landmarks() as u32 {
         let (partners, together) = counts.row(LandmarkId(landmark));
@@ -147,7 +164,7 @@ fn packed_pairs(counts: &CoVisibility) -> Vec<u8> {
 }
 
 /// What stands between the format and the check sum.
-fn contents(rest: &mut Rest) -> Result<MapState, String> {
+fn contents(rest: &mut Rest, format: u32) -> Result<MapState, String> {
     let length = rest.size()?;
     let map = GlobalMap::parse_binary(rest.take(length)?, "its map").map_err(|error| error.to_string())?;
     let length = rest.size()?;
@@ -165,6 +182,12 @@ fn contents(rest: &mut Rest) -> Result<MapState, String> {
     let (starts, seen) = steps_of(Rest(rest.take(length)?), steps, landmarks)?;
     let mut sightings = vec![0; landmarks];
     seen.iter().for_each(|&landmark| sightings[landmark as usize] += 1);
+    let ranges = if format >= WITH_RANGES {
+        let (count, length) = (rest.size()?, rest.size()?);
+        ranges_of(Rest(rest.take(length)?), count)?
+    } else {
+        Vec::new()
+    };
     let length = rest.size()?;
     let rows = pairs_of(Rest(rest.take(length)?), landmarks)?;
     rest.end()?;
@@ -174,6 +197,7 @@ fn contents(rest: &mut Rest) -> Result<MapState, String> {
         return Err(format!("it has {} rules for {} components", rules.len(), members(&map).len()));
     }
     let log = SightingLog::from_numbers(names, starts, seen);
+    let log = log.with_ranges(ranges).map_err(|error| format!("its ranges, {error}"))?;
     Ok(MapState { log, counts, map, ground: Ground { polished, settled, rules, whole } })
 }
 
@@ -192,6 +216,17 @@ fn steps_of(mut rest: Rest, steps: usize, landmarks: usize) -> Result<(Vec<usize
         starts.push(seen.len());
     }
     Ok((starts, seen))
+}
+
+fn ranges_of(mut rest: Rest, count: usize) -> Result<Vec<Range>, String> {
+    let mut ranges = Vec::with_capacity(count.min(rest.0.len()));
+    let mut step = 0;
+    for _ in 0..count {
+        step += rest.varint()? as usize;
+        let landmark = rest.varint()?;
+        ranges.push(Range { step, landmark, metres: rest.list(1, f64::from_le_bytes, 1)?[0] });
+    }
+    Ok(ranges)
 }
 
 fn pairs_of(mut rest: Rest, landmarks: usize) -> Result<Vec<Vec<(u32, u32)>>, String> {

@@ -72,9 +72,8 @@ impl Mapper {
     /// As [`Mapper::build`], and keeps what is needed to go on when there are more steps: see [`MapState`].
     ///
     /// # Errors
-    /// As [`Mapper::build`], and [`MapError::RangesInState`] for a log with ranges.
+    /// As [`Mapper::build`].
     pub fn build_with_state(&self, log: SightingLog, observer: &dyn Observer) -> Result<MapState, MapError> {
-        without_ranges(&log)?;
         let counts = CoVisibility::count(&log, observer)?;
         let built = self.build_known(&log, counts, observer)?;
         Ok(MapState::new(log, built))
@@ -118,11 +117,6 @@ impl MapState {
     pub fn counts(&self) -> &CoVisibility {
         &self.counts
     }
-}
-
-/// Refuses a log with ranges: its map is in metres, while a state goes on in map units.
-pub(crate) fn without_ranges(log: &SightingLog) -> Result<(), MapError> {
-    if log.ranges().is_empty() { Ok(()) } else { Err(MapError::RangesInState { ranges: log.ranges().len() }) }
 }
 
 /// The landmarks of every component of a map, ascending.

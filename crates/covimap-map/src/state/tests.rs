@@ -1,6 +1,6 @@
 use super::*;
 use crate::fixtures::{log_of, looks, scattered};
-use crate::{Mapper, MapperParams, Method, Range, Silent};
+use crate::{LandmarkId, Mapper, MapperParams, Method, PlacedLandmark, Range, Silent};
 
 fn state() -> MapState {
     let looks = looks(&scattered(60, [2.0, 1.5], 3), [2.0, 1.5], 0.5, 600);
@@ -29,17 +29,63 @@ fn refusal(bytes: &[u8]) -> String {
     MapState::parse(bytes, "s").unwrap_err().to_string()
 }
 
+/// Looks at a hall and how far the landmarks were, exactly, in a unit of a third of a metre.
+fn ranged(steps: std::ops::Range<usize>) -> SightingLog {
+    let places = scattered(60, [2.0, 1.5], 3);
+    let looks = &looks(&places, [2.0, 1.5], 0.5, 600)[steps];
+    let log = SightingLog::from_steps(looks.iter().map(|look| look.iter().map(usize::to_string)));
+    let mut ranges = Vec::new();
+    for (step, look) in looks.iter().enumerate() {
+        // A place near the middle of what is in sight: any will do.
+        let count = look.len() as f64;
+        let [x, y] =
+            look.iter().fold([0.1, 0.0], |[x, y], &i| [x + places[i][0] / count, y + places[i][1] / count]);
+        for &landmark in log.step(step) {
+            let at = places[log.names().name(LandmarkId(landmark)).parse::<usize>().unwrap()];
+            ranges.push(Range { step, landmark, metres: 3.0 * (at[0] - x).hypot(at[1] - y) });
+        }
+    }
+    log.with_ranges(ranges).unwrap()
+}
+
 #[test]
-fn ranges_are_refused_and_the_state_stays() {
-    let log = SightingLog::from_steps([["0", "1"]]);
-    let ranged = log.with_ranges(vec![Range { step: 0, landmark: 0, metres: 1.0 }]).unwrap();
+fn ranges_are_kept_and_go_on() {
     let mapper = Mapper::new(MapperParams::default()).unwrap();
-    let refused = mapper.build_with_state(ranged.clone(), &Silent).unwrap_err();
-    assert!(matches!(refused, MapError::RangesInState { ranges: 1 }), "{refused}");
-    let mut state = state();
-    let before = state.clone();
-    assert!(matches!(state.update(&ranged, &Silent), Err(MapError::RangesInState { ranges: 1 })));
-    assert_eq!(state, before);
+    let mut state = mapper.build_with_state(ranged(0..500), &Silent).unwrap();
+    let loaded = MapState::parse(&bytes(&state), "s").unwrap();
+    assert!(loaded == state && loaded.log().ranges().len() > 1000);
+    let before = state.map().clone();
+    let report = state.update(&ranged(500..600), &Silent).unwrap();
+    assert!(report.whole.is_some_and(|why| why.contains("ranges")));
+    assert!(state.log().ranges() == ranged(0..600).ranges());
+    // In metres, and where it was.
+    let built = mapper.build(&ranged(0..600), &Silent).unwrap();
+    assert_eq!(state.map().alignment(), built.alignment());
+    let away = |a: &PlacedLandmark, b: &PlacedLandmark| {
+        (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1])
+    };
+    let (updated, built) = (state.map().landmarks(), built.landmarks());
+    for k in 1..60 {
+        assert!((away(&updated[0], &updated[k]) - away(&built[0], &built[k])).abs() < 1e-9);
+        assert!(away(&updated[k], &before.landmarks()[k]) < 0.01, "{k}");
+    }
+    // Steps without ranges are added to a map in metres, too.
+    let bare = ranged(0..50).with_ranges(Vec::new()).unwrap();
+    assert!(state.update(&bare, &Silent).unwrap().whole.is_some());
+    assert_eq!(state.map().alignment().len(), 1);
+}
+
+#[test]
+fn a_state_of_the_first_format_is_read() {
+    let state = state();
+    let now = bytes(&state);
+    let counts = file::packed_pairs(&state.counts).len() + 8;
+    let body = &now[..now.len() - 4];
+    let (before, counts) = body.split_at(body.len() - counts);
+    // Without the count and the length of no ranges.
+    let mut then = [&before[..before.len() - 16], counts].concat();
+    then[8] = 1;
+    assert_eq!(MapState::parse(&summed(then), "s").unwrap(), state);
 }
 
 #[test]
@@ -82,7 +128,7 @@ fn a_damaged_state_is_refused() {
     other[8] = 9;
     assert_eq!(
         refusal(&other),
-        "s: state is format 9, this build reads 1; use the covimap that wrote it or build again with --state"
+        "s: state is format 9, this build reads 2; use the covimap that wrote it or build again with --state"
     );
     let foreign = "s: no whole state, it does not begin as one; give one that `covimap build --state` wrote, or build again";
     assert_eq!(refusal(b"{\"format\":1,\"landmarks\":[]}"), foreign);

@@ -26,7 +26,7 @@ mod seat;
 mod whole;
 
 use crate::mapper::honest_links;
-use crate::state::{Ground, members, without_ranges};
+use crate::state::{Ground, members};
 use crate::{
     CoVisibility, GlobalMap, HonestyReport, LinkGraph, MapError, MapState, Mapper, MapperParams, Method,
     Observer, SightingLog, UpdateReport, aliases,
@@ -65,10 +65,8 @@ impl MapState {
     /// The same log, cut at the same places, gives the same map for any number of threads.
     ///
     /// # Errors
-    /// As [`crate::Mapper::build`] for the joined log, [`MapError::TooManySteps`], and
-    /// [`MapError::RangesInState`] for steps with ranges. The state is then as it was.
+    /// As [`crate::Mapper::build`] for the joined log, and [`MapError::TooManySteps`]. The state is then as it was.
     pub fn update(&mut self, later: &SightingLog, observer: &dyn Observer) -> Result<UpdateReport, MapError> {
-        without_ranges(later)?;
         let (next, report) = after(self, later, observer)?;
         *self = next;
         Ok(report)
@@ -125,6 +123,8 @@ fn reason(old: &MapState, log: &SightingLog, counts: &CoVisibility) -> Option<&'
         Some("IDs that several landmarks bear are split anew when there are more steps")
     } else if old.map.names() != old.log.names() {
         Some("IDs that several landmarks seemed to bear do so no more")
+    } else if !log.ranges().is_empty() {
+        Some("ranges hold everything to everything, in metres")
     } else if by_paths {
         Some("the lengths of paths along links hold the map open, and they change as a whole")
     } else if fresh >= MOST_FRESH * log.sightings() as f64 {
