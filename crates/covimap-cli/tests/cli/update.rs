@@ -118,13 +118,13 @@ fn what_is_no_whole_state_is_refused_and_nothing_is_touched() {
     });
     scratch.file("later", {
         let mut other = state.clone();
-        other[8] = 2;
+        other[8] = 3;
         other
     });
     for (name, message) in [
         ("short", "short: no whole state, its check sum is"),
         ("flipped", "flipped: no whole state, its check sum is"),
-        ("later", "later: state is format 2, this build reads 1"),
+        ("later", "later: state is format 3, this build reads 2"),
         ("first.jsonl", "first.jsonl: no whole state, it does not begin as one"),
         ("map.json", "map.json: no whole state, it does not begin as one"),
         ("none", "none: cannot be read; give a state, as `covimap build --state` writes it"),
