@@ -179,8 +179,14 @@ impl MapIndex {
     }
 
     fn turn(&self, ids: [LandmarkId; 3]) -> Orientation {
-        let [a, b, c] = ids.map(|id| self.placed(id).position);
-        let area = doubled_area(a, b, c);
+        let position = |id: LandmarkId| self.placed(id).position;
+        let [a, b, c] = ids.map(position);
+        // In one order always, so that triples nearly in line turn the same way from whichever landmark one begins.
+        let mut ascending = ids;
+        ascending.sort_unstable();
+        let is_even = (0..3).any(|k| [ids[k], ids[(k + 1) % 3], ids[(k + 2) % 3]] == ascending);
+        let [first, second, third] = ascending.map(position);
+        let area = doubled_area(first, second, third) * if is_even { 1.0 } else { -1.0 };
         let gradients = [(b, c), (c, a), (a, b)].map(|(p, q)| [p[1] - q[1], q[0] - p[0]]);
         let independent: f64 =
             ids.iter().zip(gradients).map(|(&id, gradient)| self.covariance_of(id).along(gradient)).sum();

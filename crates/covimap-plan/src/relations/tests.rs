@@ -121,6 +121,22 @@ fn the_order_around_a_place_turns_left_from_the_first() {
 }
 
 #[test]
+fn a_triple_nearly_in_line_turns_one_way_whatever_comes_first() {
+    for ray in 0..200 {
+        let (sin, cos) = (f64::from(ray) * 0.03).sin_cos();
+        let at = |far: f64| [0.1 + far * cos, 0.2 + far * sin];
+        let index = index_of(&[at(0.3), at(1.1), at(0.7)], &[]);
+        let left =
+            |ids: [&str; 3]| index.orientation(ids[0], ids[1], ids[2]).unwrap().orientation == Turn::Left;
+        let first = left(["L0", "L1", "L2"]);
+        assert!(left(["L1", "L2", "L0"]) == first && left(["L2", "L0", "L1"]) == first, "ray {ray}");
+        // The other way round but for those in line exactly, which count as left.
+        let exactly = doubled_area(at(0.3), at(1.1), at(0.7)) == 0.0;
+        assert!(exactly || left(["L1", "L0", "L2"]) != first, "ray {ray}");
+    }
+}
+
+#[test]
 fn rounding_does_not_turn_one_direction_into_a_whole_turn() {
     // Landmarks on rays from a place whose differences are not exact.
     let from = [0.1, 0.2];
